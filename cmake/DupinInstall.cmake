@@ -1,1 +1,55 @@
+# Installation: find_package(dupin) with a target a folder (dupin::nurbs, …) and all of them as dupin::dupin, and a
+# pkg-config module. What the installed package must find again is read off the targets themselves.
+include(CMakePackageConfigHelpers)
 
+add_library(dupin_all INTERFACE)
+add_library(dupin::dupin ALIAS dupin_all)
+set_target_properties(dupin_all PROPERTIES EXPORT_NAME dupin)
+install(TARGETS dupin_all EXPORT dupinTargets)
+
+# The pkg-config module of each package that a target may link to; empty: found without one.
+set(DUPIN_PC_TBB tbb)
+set(DUPIN_PC_OpenEXR OpenEXR)
+set(DUPIN_PC_Imath Imath)
+set(DUPIN_PC_PNG libpng)
+set(DUPIN_PC_ZLIB zlib)
+set(DUPIN_PC_hwy libhwy)
+set(DUPIN_PC_HWY libhwy)
+set(DUPIN_PC_Threads "")
+set(DUPIN_PC_Eigen3 eigen3)
+
+set(DUPIN_PACKAGES "")
+set(DUPIN_PC_REQUIRES "")
+set(DUPIN_PC_LIBS "")
+foreach(library IN LISTS DUPIN_LIBRARIES)
+  target_link_libraries(dupin_all INTERFACE ${library})
+  target_include_directories(${library} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  # A static library stands before those that it needs: highest layer first.
+  string(PREPEND DUPIN_PC_LIBS "-l${library} ")
+  get_target_property(links ${library} LINK_LIBRARIES)
+  foreach(link IN LISTS links)
+    if(link MATCHES "^([A-Za-z0-9]+)::" AND NOT CMAKE_MATCH_1 STREQUAL dupin)
+      set(package ${CMAKE_MATCH_1})
+      if(NOT DEFINED DUPIN_PC_${package})
+        message(WARNING "DupinInstall.cmake does not know the pkg-config module of ${package}")
+      endif()
+      list(APPEND DUPIN_PACKAGES ${package})
+      list(APPEND DUPIN_PC_REQUIRES ${DUPIN_PC_${package}})
+    endif()
+  endforeach()
+endforeach()
+list(REMOVE_DUPLICATES DUPIN_PACKAGES)
+list(REMOVE_DUPLICATES DUPIN_PC_REQUIRES)
+list(JOIN DUPIN_PC_REQUIRES " " DUPIN_PC_REQUIRES)
+
+set(config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/dupin)
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/dupinConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/dupinConfig.cmake INSTALL_DESTINATION ${config_folder})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/dupinConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+file(RELATIVE_PATH DUPIN_PC_TO_PREFIX /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+configure_file(${CMAKE_CURRENT_LIST_DIR}/dupin.pc.in ${PROJECT_BINARY_DIR}/dupin.pc @ONLY)
+install(EXPORT dupinTargets NAMESPACE dupin:: DESTINATION ${config_folder})
+install(FILES ${PROJECT_BINARY_DIR}/dupinConfig.cmake ${PROJECT_BINARY_DIR}/dupinConfigVersion.cmake
+  DESTINATION ${config_folder})
+install(FILES ${PROJECT_BINARY_DIR}/dupin.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
