@@ -1,0 +1,127 @@
+// dupin info: what a file holds.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "colors.h"
+#include "commands.h"
+#include "exit_code.h"
+#include "load.h"
+#include "session.h"
+
+namespace dupin::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InfoOptions {
+  CommonOptions common;
+  std::string file;
+  bool json = false;
+};
+
+/// Face instances by what they lie on and by colour, and the triangles of faces that the file has only as such.
+struct Counts {
+  std::map<std::string, std::size_t> surfaces, colors;
+  std::size_t triangles = 0;
+};
+
+Counts count(const Model& model) {
+  Counts counts;
+  for (const Instance& instance : model.instances) {
+    const Part& part = model.parts[instance.part];
+    counts.triangles += part.mesh.triangles.size() / 3;
+    for (const Face& face : part.faces) {
+      ++counts.surfaces[std::string(kind_name(part.surfaces[face.surface]))];
+      const auto color = file_color(face, instance, part);
+      ++counts.colors[color ? hex_color(*color) : "none"];
+    }
+  }
+  return counts;
+}
+
+Json to_json(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+Json to_json(const Model& model, const std::string& file) {
+  const Counts counts = count(model);
+  const std::size_t faces = face_instance_count(model), skipped = skipped_count(model.skipped);
+  Json json;
+  json["file"] = file;
+  json["format"] = model.format;
+  json["units"] = model.unit_note;
+  json["parts"] = model.parts.size();
+  json["instances"] = model.instances.size();
+  json["faces"] = {{"total", faces + skipped}, {"readable", faces}, {"by_surface", counts.surfaces}};
+  if (counts.triangles) json["triangles"] = counts.triangles;
+  const Box3 box = bounding_box(model);
+  json["bounding_box"] = box.empty() ? Json(nullptr) : Json{{"min", to_json(box.lo)}, {"max", to_json(box.hi)}};
+  json["colors"] = counts.colors;
+  json["skipped"] = Json::array();
+  for (const SkippedFace& face : model.skipped)
+    json["skipped"].push_back({{"name", face.name}, {"reason", face.reason}, {"count", face.count}});
+  json["notes"] = model.notes;
+  return json;
+}
+
+void row(const char* name, const std::string& text) { std::printf("%-13s %s\n", name, text.c_str()); }
+
+std::string list(const std::map<std::string, std::size_t>& counts) {
+  std::string text;
+  for (const auto& [name, n] : counts) text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + name;
+  return text;
+}
+
+std::string numbers(const char* format, const Vec3& v) {
+  char text[128];
+  std::snprintf(text, sizeof text, format, v.x, v.y, v.z);
+  return text;
+}
+
+void print_table(const Model& model, const std::string& file) {
+  const Counts counts = count(model);
+  const std::size_t faces = face_instance_count(model), skipped = skipped_count(model.skipped);
+  row("file", file);
+  row("format", model.format);
+  row("units", model.unit_note);
+  row("parts", std::to_string(model.parts.size()) + " in " + std::to_string(model.instances.size()) + " instances");
+  row("faces", std::to_string(faces + skipped) + (counts.surfaces.empty() ? "" : ": " + list(counts.surfaces)));
+  if (counts.triangles) row("triangles", std::to_string(counts.triangles));
+  row("colours", counts.colors.empty() ? "none" : list(counts.colors));
+  if (const Box3 box = bounding_box(model); !box.empty()) {
+    row("box", numbers("%.6g %.6g %.6g", box.lo) + " … " + numbers("%.6g %.6g %.6g", box.hi));
+    row("size", numbers("%.6g × %.6g × %.6g", box.size()));
+  }
+  for (const std::string& note : model.notes) row("note", note);
+  if (skipped) row("not readable", std::to_string(skipped) + (skipped == 1 ? " face" : " faces"));
+  for (const SkippedFace& face : model.skipped)
+    row("", face.name + (face.count > 1 ? " (" + std::to_string(face.count) + " times)" : "") + ": " + face.reason);
+}
+
+int run(const InfoOptions& options) {
+  Session session(options.common);
+  const Result<Loaded> loaded = load(session, {options.file});
+  if (!loaded.ok()) return session.fail(loaded.status());
+  session.done();
+  if (options.json)
+    std::printf("%s\n", to_json(loaded->model, options.file).dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+  else
+    print_table(loaded->model, options.file);
+  if (std::fflush(stdout) != 0) return session.fail({StatusCode::cannot_write, "standard output: cannot write"});
+  return options.common.strict && !loaded->model.skipped.empty() ? kPartial : kDone;
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, Command& chosen) {
+  const auto options = std::make_shared<InfoOptions>();
+  CLI::App* command = app.add_subcommand("info", "Say what a CAD file holds");
+  command->add_option("FILE", options->file, "STEP, IGES, BREP or FCStd")->required();
+  command->add_flag("--json", options->json, "As JSON, for programs");
+  add_common_options(*command, options->common);
+  command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+}
+
+}  // namespace dupin::app
