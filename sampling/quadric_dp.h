@@ -74,6 +74,7 @@ struct QuadricDp {
   /// Certified: no point drawn is farther than `bound` (model units) from the face's surface, and no drawn normal turned by
   /// more than `normal_bound` (radians) from the surface's there. docs/mathematics.md, "Certificates".
   double bound = 0, normal_bound = 0;
+  bool speck = false;  ///< smaller than the tolerance, at a singular point: flat, and `normal_bound` says nothing
   Box2 cell;  ///< the parameter rectangle it was made for; where u, v of a pixel are searched from
   Vec3 n() const { return cross(u, v); }
 };
@@ -95,6 +96,7 @@ struct PartDps {
   std::vector<ArcPiece> arcs;
   std::vector<EllipsePiece> ellipses;
   std::vector<SkippedFace> skipped;  ///< faces that could not be made into DPs
+  double bound_px = 0;               ///< see DpScene
 };
 
 /// Whether a point p of the DP's frame, on F = 0, is drawn: the region's three tests, as the shader makes them.
@@ -105,7 +107,8 @@ bool pieces_contain(const PartDps& part, const QuadricDp& dp, Vec2 p);
 /// A whole model's, part by part; instances are the model's.
 struct DpScene {
   std::vector<PartDps> parts;
-  double bound = 0, normal_bound = 0;  ///< the largest of all DPs (radians)
+  double bound = 0, normal_bound = 0;  ///< the largest of all DPs (specks left out of normal_bound; radians)
+  double bound_px = 0;  ///< the largest bound in pixels where its DP is nearest to the camera; 0 without one
   std::size_t count() const;
 };
 

@@ -1,34 +1,9 @@
 // The region of a quadric DP, tested as the shader tests it.
 #include "quadric_dp.h"
 
+#include "piece_tests.h"
+
 namespace dupin {
-namespace {
-
-/// Whether the segment from the reference r to p crosses the segment a–b; each end point's side is decided by one
-/// expression of that point alone, so chains that share end points are counted consistently.
-bool crosses(Vec2 r, Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 d = p - r;
-  const bool side_a = cross(d, a - r) > 0, side_b = cross(d, b - r) > 0;
-  if (side_a == side_b) return false;
-  return (cross(b - a, p - a) > 0) != (cross(b - a, r - a) > 0);
-}
-
-/// Between chord and arc: barycentric coordinates (b0, b1, b2) with 0 <= b1² <= 4 w² b0 b2.
-bool in_bulge(const ArcPiece& arc, Vec2 p) {
-  const double area = cross(arc.p1 - arc.p0, arc.p2 - arc.p0);
-  if (area == 0) return false;
-  const double b0 = cross(arc.p1 - p, arc.p2 - p) / area, b2 = cross(arc.p0 - p, arc.p1 - p) / area;
-  const double b1 = 1 - b0 - b2;
-  return b0 >= 0 && b1 > 0 && b1 * b1 < 4 * arc.w * arc.w * b0 * b2;
-}
-
-bool in_ellipse(const EllipsePiece& e, Vec2 p) {
-  const Vec2 d = p - e.center;
-  const double x = e.mxx * d.x + e.mxy * d.y, y = e.mxy * d.x + e.myy * d.y;
-  return x * x + y * y < 1;
-}
-
-}  // namespace
 
 bool pieces_contain(const PartDps& part, const QuadricDp& dp, Vec2 p) {
   // Bulges and ellipses hold the reference or not once and for all: `reference_inside` has that folded in.

@@ -1,0 +1,336 @@
+// See docs/mathematics.md, "Certificates". F∘S is a polynomial of twice the patch's degrees (over w² for rational ones); its
+// Bernstein coefficients bound |F| over the cell and, through its derivatives and the chart's Jacobian, the difference between
+// the slopes of quadric and surface as graphs over the DP's tangent plane. The angle between two normals is at most the
+// difference of their graphs' slopes.
+#include "bezier_cell.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace dupin {
+namespace {
+
+using bernstein::Net;
+using bernstein::Range;
+using bernstein::Side;
+
+/// ∂F/∂z stays above this over an accepted cell (1 at its centre).
+constexpr double kLeastSheet = 0.3;
+/// The chart's Jacobian changes by at most this much, relative, over an accepted cell: then (s,t) ↦ (x,y) is one to one.
+constexpr double kMostTwist = 0.5;
+
+Vec4 operator+(const Vec4& a, const Vec4& b) { return {a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w}; }
+Vec4 operator-(const Vec4& a, const Vec4& b) { return {a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w}; }
+Vec4 operator*(const Vec4& a, double s) { return {a.x * s, a.y * s, a.z * s, a.w * s}; }
+Vec3 xyz(const Vec4& a) { return {a.x, a.y, a.z}; }
+Vec3 dehomogenised(const Vec4& a) { return xyz(a) / a.w; }
+
+/// Value, first and second derivative at ½ of a Bézier polynomial that was reduced to its last `count` <= 3 points.
+struct Middle {
+  Vec4 value, first, second;
+};
+Middle middle(const Vec4* b, int count, int degree) {
+  if (count == 1) return {b[0], {}, {}};
+  if (count == 2) return {(b[0] + b[1]) * 0.5, b[1] - b[0], {}};
+  return {(b[0] + b[1] * 2 + b[2]) * 0.25, (b[2] - b[0]) * (0.5 * degree),
+          (b[0] - b[1] * 2 + b[2]) * (static_cast<double>(degree) * (degree - 1))};
+}
+
+/// De Casteljau at ½ down to at most three points; returns how many are left.
+int reduce(Vec4* b, int degree) {
+  int n = degree + 1;
+  while (n > 3) {
+    for (int i = 0; i + 1 < n; ++i) b[i] = (b[i] + b[i + 1]) * 0.5;
+    --n;
+  }
+  return n;
+}
+
+SurfaceJet jet_at_middle(const BezierPatch& patch) {
+  std::array<Vec4, 32> row;
+  std::array<Middle, 32> across;
+  for (int i = 0; i <= patch.degree_u; ++i) {
+    for (int j = 0; j <= patch.degree_v; ++j) row[j] = patch.pole(i, j);
+    across[i] = middle(row.data(), reduce(row.data(), patch.degree_v), patch.degree_v);
+  }
+  auto along = [&](auto member) {
+    for (int i = 0; i <= patch.degree_u; ++i) row[i] = across[i].*member;
+    return middle(row.data(), reduce(row.data(), patch.degree_u), patch.degree_u);
+  };
+  const Middle v0 = along(&Middle::value), v1 = along(&Middle::first), v2 = along(&Middle::second);
+  // Quotient rule: with h = w·p, p = h / w.
+  const double w = v0.value.w;
+  SurfaceJet jet;
+  jet.p = xyz(v0.value) / w;
+  jet.pu = (xyz(v0.first) - jet.p * v0.first.w) / w;
+  jet.pv = (xyz(v1.value) - jet.p * v1.value.w) / w;
+  jet.puu = (xyz(v0.second) - jet.pu * (2 * v0.first.w) - jet.p * v0.second.w) / w;
+  jet.puv = (xyz(v1.first) - jet.pu * v1.value.w - jet.pv * v0.first.w - jet.p * v1.first.w) / w;
+  jet.pvv = (xyz(v2.value) - jet.pv * (2 * v1.value.w) - jet.p * v2.value.w) / w;
+  return jet;
+}
+
+Range operator+(Range a, Range b) { return {a.lo + b.lo, a.hi + b.hi}; }
+Range operator*(Range a, double s) { return s >= 0 ? Range{a.lo * s, a.hi * s} : Range{a.hi * s, a.lo * s}; }
+Range product(Range a, Range b) {
+  const double c[4] = {a.lo * b.lo, a.lo * b.hi, a.hi * b.lo, a.hi * b.hi};
+  return {*std::min_element(c, c + 4), *std::max_element(c, c + 4)};
+}
+
+/// Affine change of parameter from [0,1] to [lo,hi] of a Bézier polynomial, by blossoming; any lo < hi.
+void reparametrise(Vec4* b, int degree, int stride, double lo, double hi) {
+  std::array<Vec4, 32> p, out;
+  for (int i = 0; i <= degree; ++i) p[i] = b[i * stride];
+  // One side of the triangle at hi gives the poles over [0,hi]; of those the other side of the triangle at lo/hi, the poles over
+  // [lo,hi].
+  for (int k = 0; k <= degree; ++k) {
+    out[k] = p[0];
+    for (int i = 0; i + 1 <= degree - k; ++i) p[i] = p[i] * (1 - hi) + p[i + 1] * hi;
+  }
+  const double r = lo / hi;
+  for (int k = 0; k <= degree; ++k) {
+    b[(degree - k) * stride] = out[degree - k];
+    for (int i = 0; i + 1 <= degree - k; ++i) out[i] = out[i] * (1 - r) + out[i + 1] * r;
+  }
+}
+
+}  // namespace
+
+CollapsedSides collapsed_sides(const BezierPatch& patch) {
+  const Box3 box = poles_box(patch);
+  const double eps = 1e-10 * box.diagonal();
+  auto single = [&](auto pole, int count) {
+    for (int k = 1; k <= count; ++k)
+      if (distance(dehomogenised(pole(k)), dehomogenised(pole(0))) > eps) return false;
+    return true;
+  };
+  const int p = patch.degree_u, q = patch.degree_v;
+  return {single([&](int k) { return patch.pole(0, k); }, q), single([&](int k) { return patch.pole(p, k); }, q),
+          single([&](int k) { return patch.pole(k, 0); }, p), single([&](int k) { return patch.pole(k, q); }, p)};
+}
+
+void split_patch(const BezierPatch& patch, bool along_u, BezierPatch& first, BezierPatch& second) {
+  first = patch;
+  second = patch;
+  const int degree = along_u ? patch.degree_u : patch.degree_v, lines = along_u ? patch.degree_v : patch.degree_u;
+  const int stride = along_u ? patch.degree_v + 1 : 1, line_stride = along_u ? 1 : patch.degree_v + 1;
+  for (int l = 0; l <= lines; ++l) {
+    Vec4* a = first.poles.data() + l * line_stride;
+    Vec4* b = second.poles.data() + l * line_stride;
+    for (int k = 1; k <= degree; ++k) {
+      for (int i = 0; i <= degree - k; ++i) b[i * stride] = (b[i * stride] + b[(i + 1) * stride]) * 0.5;
+      a[k * stride] = b[0];
+    }
+  }
+}
+
+BezierPatch grown_patch(const BezierPatch& patch, const CollapsedSides& collapsed) {
+  BezierPatch grown = patch;
+  const double m = kCellMargin;
+  for (int j = 0; j <= patch.degree_v; ++j)
+    reparametrise(&grown.pole(0, j), patch.degree_u, patch.degree_v + 1, collapsed.u0 ? 0 : -m, collapsed.u1 ? 1 : 1 + m);
+  for (int i = 0; i <= patch.degree_u; ++i)
+    reparametrise(&grown.pole(i, 0), patch.degree_v, 1, collapsed.v0 ? 0 : -m, collapsed.v1 ? 1 : 1 + m);
+  return grown;
+}
+
+Box3 poles_box(const BezierPatch& patch) {
+  Box3 box;
+  for (const Vec4& pole : patch.poles) box.add(dehomogenised(pole));
+  return box;
+}
+
+bool CellFitter::place(const BezierPatch& cell, CellFit& out) {
+  const SurfaceJet jet = jet_at_middle(cell);
+  const Curvature k = principal_curvature(jet);
+  if (!is_finite(k.n) || !is_finite(k.d1) || !std::isfinite(k.k1) || !std::isfinite(k.k2)) return false;
+  const Vec3 n = cross(jet.pu, jet.pv);
+  if (!(length(n) > 1e-9 * length(jet.pu) * length(jet.pv))) return false;
+  QuadricDp& dp = out.dp;
+  dp.origin = jet.p, dp.u = k.d1, dp.v = k.d2, dp.lambda_u = k.k1, dp.lambda_v = k.k2;
+  jacobian_[0][0] = dot(jet.pu, dp.u), jacobian_[0][1] = dot(jet.pv, dp.u);
+  jacobian_[1][0] = dot(jet.pu, dp.v), jacobian_[1][1] = dot(jet.pv, dp.v);
+  return true;
+}
+
+void CellFitter::load(const BezierPatch& grown, const QuadricDp& dp) {
+  const int p = grown.degree_u, q = grown.degree_v;
+  const Vec3 n = dp.n();
+  const auto bp = bernstein::binomials(p), bq = bernstein::binomials(q);
+  rational_ = grown.rational;
+  least_w_ = most_w_ = grown.poles[0].w;
+  box_ = {};
+  for (Net* net : {&x_, &y_, &z_, &w_}) net->reset(p, q);
+  for (int i = 0; i <= p; ++i)
+    for (int j = 0; j <= q; ++j) {
+      const Vec4& pole = grown.pole(i, j);
+      const Vec3 d = xyz(pole) - dp.origin * pole.w;
+      const Vec3 l{dot(d, dp.u), dot(d, dp.v), dot(d, n)};
+      const double b = bp[i] * bq[j];
+      x_.at(i, j) = l.x * b, y_.at(i, j) = l.y * b, z_.at(i, j) = l.z * b, w_.at(i, j) = pole.w * b;
+      least_w_ = std::min(least_w_, pole.w), most_w_ = std::max(most_w_, pole.w);
+      if (pole.w > 0) box_.add(l / pole.w);
+    }
+}
+
+/// a, b, c by least squares on the Bernstein coefficients of F∘S, which is linear in them.
+void CellFitter::fit_third_order(QuadricDp& dp) {
+  const int p = 2 * x_.p, q = 2 * x_.q;
+  bernstein::multiply(x_, z_, xz_);
+  bernstein::multiply(y_, z_, yz_);
+  bernstein::multiply(z_, z_, zz_);
+  bernstein::multiply(z_, w_, f_);
+  bernstein::add_product(x_, x_, -0.5 * dp.lambda_u, f_);
+  bernstein::add_product(y_, y_, -0.5 * dp.lambda_v, f_);
+  const auto bp = bernstein::binomials(p), bq = bernstein::binomials(q);
+  double g[3][3] = {}, r[3] = {};
+  for (int i = 0; i <= p; ++i)
+    for (int j = 0; j <= q; ++j) {
+      const double s = 1 / (bp[i] * bq[j]), e[3] = {xz_.at(i, j) * s, yz_.at(i, j) * s, 0.5 * zz_.at(i, j) * s}, t = f_.at(i, j) * s;
+      for (int k = 0; k < 3; ++k) {
+        r[k] += e[k] * t;
+        for (int l = 0; l < 3; ++l) g[k][l] += e[k] * e[l];
+      }
+    }
+  // Where the cell is all but flat the three are not determined: a ridge relative to each one's own size keeps them small.
+  double scale[3];
+  for (int k = 0; k < 3; ++k) scale[k] = g[k][k] > 0 ? 1 / std::sqrt(g[k][k]) : 0;
+  Mat3 m;
+  double rows[3][3];
+  for (int k = 0; k < 3; ++k)
+    for (int l = 0; l < 3; ++l) rows[k][l] = g[k][l] * scale[k] * scale[l] + (k == l ? 1e-9 : 0);
+  m.x = {rows[0][0], rows[1][0], rows[2][0]}, m.y = {rows[0][1], rows[1][1], rows[2][1]}, m.z = {rows[0][2], rows[1][2], rows[2][2]};
+  const Vec3 x = inverse(m) * Vec3{r[0] * scale[0], r[1] * scale[1], r[2] * scale[2]};
+  if (is_finite(x)) dp.a = x.x * scale[0], dp.b = x.y * scale[1], dp.c = x.z * scale[2];
+  for (std::size_t i = 0; i < f_.c.size(); ++i) f_.c[i] -= dp.a * xz_.c[i] + dp.b * yz_.c[i] + 0.5 * dp.c * zz_.c[i];
+}
+
+bool CellFitter::certify(const CollapsedSides& collapsed, double tolerance, double normal_tolerance, CellFit& out) {
+  QuadricDp& dp = out.dp;
+  const double value_bound = bernstein::magnitude(f_) / (least_w_ * least_w_);
+  const double ax = std::max(-box_.lo.x, box_.hi.x), ay = std::max(-box_.lo.y, box_.hi.y), az = std::max(-box_.lo.z, box_.hi.z);
+  // Between surface and quadric, which lies at most `tolerance` above or below it.
+  const double gz = 1 - std::abs(dp.a) * ax - std::abs(dp.b) * ay - std::abs(dp.c) * (az + tolerance);
+  if (!(gz >= kLeastSheet)) return false;
+  out.bound = value_bound / gz;
+  if (!(out.bound <= tolerance)) return false;
+  dp.z_lo = box_.lo.z - out.bound, dp.z_hi = box_.hi.z + out.bound;
+  return certify_normals(collapsed, normal_tolerance, gz, out);
+}
+
+/// Ranges of the derivative of A/W^power along one parameter, over the cell. Along a collapsed side that derivative vanishes;
+/// divided by the distance to the side (in the other parameter) it does not, and neither does the Jacobian's column: the gradient
+/// in the chart, which is what counts, stays the same.
+Range CellFitter::derivative_range(const Net& numerator, bool along_u, const Side* collapsed, int power) {
+  const auto derive = [&](const Net& a, Net& out) { along_u ? bernstein::derivative_u(a, out) : bernstein::derivative_v(a, out); };
+  if (!rational_) {
+    derive(numerator, d_);
+    if (!collapsed) return bernstein::range(d_);
+    bernstein::divide_by_side(d_, *collapsed, tmp_);
+    return bernstein::range(tmp_);
+  }
+  // (A/W^k)' = (A' − k (A/W) W') / W^k. With a the value at the collapsed side, A − a W^k vanishes there and may take A's place.
+  const Net& w = power == 1 ? w_ : ww_;
+  Net& a = shifted_;
+  a = numerator;
+  Range value;
+  if (collapsed) {
+    const bool at_end = *collapsed == Side::u1 || *collapsed == Side::v1;
+    const std::size_t corner = at_end ? a.c.size() - 1 : 0;
+    const double at_side = a.c[corner] / w.c[corner];
+    for (std::size_t i = 0; i < a.c.size(); ++i) a.c[i] -= at_side * w.c[i];
+    bernstein::divide_by_side(a, *collapsed, tmp_);
+    value = bernstein::range(tmp_);
+    derive(a, tmp_);
+    bernstein::divide_by_side(tmp_, *collapsed, d_);
+  } else {
+    value = bernstein::range(a);
+    derive(a, d_);
+  }
+  const Range over_w{1 / most_w_, 1 / least_w_}, over_wk = power == 1 ? over_w : product(over_w, over_w);
+  derive(w_, dw_);
+  const Range drift = product(product(value, over_w), bernstein::range(dw_)) * (-1.0 * power);
+  return product(bernstein::range(d_) + drift, over_wk);
+}
+
+bool CellFitter::certify_normals(const CollapsedSides& collapsed, double normal_tolerance, double gz, CellFit& out) {
+  const QuadricDp& dp = out.dp;
+  const double m = kCellMargin;
+  const double grow_u = 1 + (collapsed.u0 ? 0 : m) + (collapsed.u1 ? 0 : m), grow_v = 1 + (collapsed.v0 ? 0 : m) + (collapsed.v1 ? 0 : m);
+  // The centre of the cell, as a parameter of the grown one.
+  const double mid_u = (0.5 + (collapsed.u0 ? 0 : m)) / grow_u, mid_v = (0.5 + (collapsed.v0 ? 0 : m)) / grow_v;
+  if ((collapsed.u0 && collapsed.u1) || (collapsed.v0 && collapsed.v1)) return false;
+  const Side sides[4] = {Side::u0, Side::u1, Side::v0, Side::v1};
+  const Side* for_v = collapsed.u0 ? &sides[0] : collapsed.u1 ? &sides[1] : nullptr;  // divides ∂/∂v
+  const Side* for_u = collapsed.v0 ? &sides[2] : collapsed.v1 ? &sides[3] : nullptr;
+  const double over_u = for_u ? 1 / (collapsed.v0 ? mid_v : 1 - mid_v) : 1, over_v = for_v ? 1 / (collapsed.u0 ? mid_u : 1 - mid_u) : 1;
+  double jac[2][2];
+  for (int r = 0; r < 2; ++r) jac[r][0] = jacobian_[r][0] * grow_u * over_u, jac[r][1] = jacobian_[r][1] * grow_v * over_v;
+  const double det = jac[0][0] * jac[1][1] - jac[0][1] * jac[1][0];
+  if (!(std::abs(det) > 0)) return false;
+  const double inv[2][2] = {{jac[1][1] / det, -jac[0][1] / det}, {-jac[1][0] / det, jac[0][0] / det}};
+
+  if (rational_) bernstein::multiply(w_, w_, ww_);
+  const Range xu = derivative_range(x_, true, for_u, 1), xv = derivative_range(x_, false, for_v, 1);
+  const Range yu = derivative_range(y_, true, for_u, 1), yv = derivative_range(y_, false, for_v, 1);
+  // (I + B) = J J0⁻¹ over the cell.
+  const Range b00 = xu * inv[0][0] + xv * inv[1][0], b01 = xu * inv[0][1] + xv * inv[1][1];
+  const Range b10 = yu * inv[0][0] + yv * inv[1][0], b11 = yu * inv[0][1] + yv * inv[1][1];
+  const double d0 = std::max(1 - b00.lo, b00.hi - 1), d1 = std::max(1 - b11.lo, b11.hi - 1);
+  const double twist = std::sqrt(d0 * d0 + d1 * d1 + b01.magnitude() * b01.magnitude() + b10.magnitude() * b10.magnitude());
+  if (!(twist <= kMostTwist)) return false;
+  const Range fu = derivative_range(f_, true, for_u, 2), fv = derivative_range(f_, false, for_v, 2);
+  const double gx = (fu * inv[0][0] + fv * inv[1][0]).magnitude(), gy = (fu * inv[0][1] + fv * inv[1][1]).magnitude();
+  const double ax = std::max(-box_.lo.x, box_.hi.x), ay = std::max(-box_.lo.y, box_.hi.y), az = std::max(-box_.lo.z, box_.hi.z);
+  // From the surface's point to the quadric's, `bound` along z, the quadric's slope −Fx/Fz changes by this much a length.
+  const double fx = std::abs(dp.lambda_u) * ax + std::abs(dp.a) * az, fy = std::abs(dp.lambda_v) * ay + std::abs(dp.b) * az;
+  const double drift = std::hypot(std::abs(dp.a) / gz + std::abs(dp.c) * fx / (gz * gz), std::abs(dp.b) / gz + std::abs(dp.c) * fy / (gz * gz));
+  out.normal_bound = std::hypot(gx, gy) / ((1 - twist) * gz) + out.bound * drift;
+  return out.normal_bound <= normal_tolerance;
+}
+
+CellFit CellFitter::fit(const BezierPatch& cell, double tolerance, double normal_tolerance) {
+  CellFit out;
+  const CollapsedSides collapsed = collapsed_sides(cell);
+  const BezierPatch grown = grown_patch(cell, collapsed);
+  auto longer_side = [&] {
+    double u = 0, v = 0;
+    for (int i = 0; i <= cell.degree_u; ++i)
+      for (int j = 0; j <= cell.degree_v; ++j) {
+        if (i > 0) u = std::max(u, distance(dehomogenised(cell.pole(i, j)), dehomogenised(cell.pole(i - 1, j))) * cell.degree_u);
+        if (j > 0) v = std::max(v, distance(dehomogenised(cell.pole(i, j)), dehomogenised(cell.pole(i, j - 1))) * cell.degree_v);
+      }
+    return u >= v;
+  };
+  out.split_u = longer_side();
+  if (!place(cell, out)) return out;
+  load(grown, out.dp);
+  if (!(least_w_ > 0)) return out;
+  fit_third_order(out.dp);
+  out.valid = certify(collapsed, tolerance, normal_tolerance, out);
+  if (!out.valid) {
+    // Along the parameter in which F∘S varies more; where the quadric says nothing (a strongly bent cell), along the longer side.
+    bernstein::derivative_u(f_, tmp_), bernstein::derivative_v(f_, d_);
+    const double u = bernstein::magnitude(tmp_), v = bernstein::magnitude(d_);
+    if (u > 1.3 * v || v > 1.3 * u) out.split_u = u > v;
+    return out;
+  }
+  const int p = cell.degree_u, q = cell.degree_v;
+  auto local = [&](int i, int j) { return Vec2{x_.at(i, j) / w_.at(i, j), y_.at(i, j) / w_.at(i, j)}; };
+  auto own = [&](int i, int j) {
+    const Vec3 d = dehomogenised(cell.pole(i, j)) - out.dp.origin;
+    return Vec2{dot(d, out.dp.u), dot(d, out.dp.v)};
+  };
+  for (int i = 0; i <= p; ++i) {
+    out.border[0].push_back(own(i, 0)), out.grown_border[0].push_back(local(i, 0));
+    out.border[2].push_back(own(i, q)), out.grown_border[2].push_back(local(i, q));
+  }
+  for (int j = 0; j <= q; ++j) {
+    out.border[1].push_back(own(p, j)), out.grown_border[1].push_back(local(p, j));
+    out.border[3].push_back(own(0, j)), out.grown_border[3].push_back(local(0, j));
+  }
+  return out;
+}
+
+}  // namespace dupin

@@ -1,0 +1,64 @@
+// A quadric DP for a piece of a Bézier patch, and the proof of how far it is off.
+#ifndef DUPIN_SAMPLING_BEZIER_CELL_H
+#define DUPIN_SAMPLING_BEZIER_CELL_H
+
+#include "../nurbs/bezier.h"
+#include "bernstein.h"
+#include "quadric_dp.h"
+
+namespace dupin {
+
+/// A cell is a patch over its own [0,1]². Its certificate holds on the cell grown by kCellMargin of its width on every side
+/// (not across a collapsed one): neighbouring DPs overlap there, so that no crack opens between their sheets.
+inline constexpr double kCellMargin = 0.04;
+
+/// Which sides of a patch are a single point.
+struct CollapsedSides {
+  bool u0 = false, u1 = false, v0 = false, v1 = false;
+};
+CollapsedSides collapsed_sides(const BezierPatch& patch);
+
+/// What could be proved about a cell's DP.
+struct CellFit {
+  bool valid = false;     ///< the cell is a graph over the DP's tangent plane and the quadric one sheet above it; the rest holds
+  bool split_u = true;    ///< if the cell has to be split: along u or along v
+  double bound = 0;       ///< largest distance between quadric and surface, along the DP's normal
+  double normal_bound = 0;
+  QuadricDp dp;           ///< frame, quadric, z-range
+  /// The grown cell's poles along its border, in the DP's (x,y): sides v = 0, u = 1, v = 1, u = 0; the cell's own likewise.
+  std::vector<Vec2> border[4], grown_border[4];
+};
+
+/// Fits and certifies in one go, reusing its buffers from cell to cell.
+class CellFitter {
+ public:
+  /// Stops early, with valid = false, once a bound is known to exceed the tolerances.
+  CellFit fit(const BezierPatch& cell, double tolerance, double normal_tolerance);
+
+ private:
+  bool place(const BezierPatch& cell, CellFit& out);
+  void load(const BezierPatch& grown, const QuadricDp& dp);
+  void fit_third_order(QuadricDp& dp);
+  bool certify(const CollapsedSides& collapsed, double tolerance, double normal_tolerance, CellFit& out);
+  bool certify_normals(const CollapsedSides& collapsed, double normal_tolerance, double gz, CellFit& out);
+  bernstein::Range derivative_range(const bernstein::Net& numerator, bool along_u, const bernstein::Side* collapsed, int power);
+
+  bernstein::Net x_, y_, z_, w_;                    // local homogeneous coordinates
+  bernstein::Net f_, xz_, yz_, zz_;                 // F's numerator and its parts
+  bernstein::Net ww_, d_, dw_, shifted_, tmp_;
+  double least_w_ = 1, most_w_ = 1;
+  bool rational_ = false;
+  Box3 box_;                                        // of the grown cell, local
+  double jacobian_[2][2] = {};                      // ∂(x,y)/∂(s,t) at the centre
+};
+
+/// Sub-cells by de Casteljau at one half.
+void split_patch(const BezierPatch& patch, bool along_u, BezierPatch& first, BezierPatch& second);
+/// Grown by kCellMargin, except across collapsed sides.
+BezierPatch grown_patch(const BezierPatch& patch, const CollapsedSides& collapsed);
+/// Box of the dehomogenised poles.
+Box3 poles_box(const BezierPatch& patch);
+
+}  // namespace dupin
+
+#endif

@@ -1,0 +1,146 @@
+#include "sampler.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "../core/parallel.h"
+#include "boundary.h"
+#include "patch_faces.h"
+#include "quadric_faces.h"
+#include "tolerance_field.h"
+
+namespace dupin {
+namespace {
+
+/// Edges are approximated to this part of the tolerance that holds for faces: both faces of an edge follow the same chain, and what
+/// differs from the file's curve is the picture's outline.
+constexpr double kEdgeTolerance = 0.1;
+constexpr double kTwoPi = 6.28318530717958647692;
+
+/// One face's DPs on their own, so that faces can be made in any order.
+struct FaceDps {
+  PartDps dps;
+  std::string failure;
+};
+
+/// The parameters of a point on an analytic surface, angles in [0, 2π).
+Vec2 parameters_on(const Surface& surface, const Vec3& p) {
+  auto angle = [](const Vec3& l) {
+    const double a = std::atan2(l.y, l.x);
+    return a < 0 ? a + kTwoPi : a;
+  };
+  if (const auto* c = std::get_if<Cylinder>(&surface.geometry)) {
+    const Vec3 l = c->frame.to_local(p);
+    return {angle(l), l.z};
+  }
+  if (const auto* c = std::get_if<Cone>(&surface.geometry)) {
+    Vec3 l = c->frame.to_local(p);
+    const double v = l.z / std::cos(c->half_angle);
+    if (c->radius + v * std::sin(c->half_angle) < 0) l.x = -l.x, l.y = -l.y;
+    return {angle(l), v};
+  }
+  const auto& s = std::get<Sphere>(surface.geometry);
+  const Vec3 l = s.frame.to_local(p);
+  return {angle(l), std::atan2(l.z, std::hypot(l.x, l.y))};
+}
+
+/// Whether a parameter point, known up to the period of u, is inside.
+bool inside_with_period(const FaceBoundary& boundary, Vec2 uv) {
+  const Box2& box = boundary.uv_box;
+  double u = uv.x - std::floor((uv.x - box.lo.x) / kTwoPi) * kTwoPi;
+  for (; u <= box.hi.x + 1e-9; u += kTwoPi)
+    if (uv_inside(boundary, {u, uv.y})) return true;
+  return false;
+}
+
+class PartSampler {
+ public:
+  PartSampler(const Model& model, std::uint32_t part, const SamplingOptions& options)
+      : part_(model.parts[part]), options_(options), field_(options, model, part) {
+    chains_ = part_edge_chains(part_, [this](const Box3& box) { return field_.at(box) * kEdgeTolerance; });
+  }
+
+  void sample_face(std::uint32_t index, FaceDps& out) const {
+    const Face& face = part_.faces[index];
+    const Surface& surface = part_.surfaces[face.surface];
+    if (is_quadric(surface)) return sample_quadric(index, face, surface, out);
+    const FaceBoundary boundary = face_boundary(part_, face, chains_, true);
+    const PatchFaceInput in{part_, face, index, boundary, field_, options_.normal_tolerance};
+    const PatchFaceResult result = make_patch_face(in, out.dps);
+    if (!result.rational) out.failure = "its " + std::string(kind_name(surface)) + " surface has no rational form";
+  }
+
+ private:
+  void sample_quadric(std::uint32_t index, const Face& face, const Surface& surface, FaceDps& out) const {
+    const bool plane = std::holds_alternative<Plane>(surface.geometry);
+    const FaceBoundary boundary = face_boundary(part_, face, chains_, !plane);
+    auto inside = [&](const Vec3& p) { return inside_with_period(boundary, parameters_on(surface, p)); };
+    QuadricFaceInput in{part_, face, index, surface, boundary, boundary.uv_box, {}, inside, !face.reversed};
+    if (plane) {
+      if (boundary.loops.empty()) out.failure = "its plane has no boundary";
+      else make_plane_face(in, out.dps);
+      return;
+    }
+    in.rectangle = uv_rectangle(part_, face, boundary);
+    make_curved_quadric_face(in, out.dps);
+  }
+
+  const Part& part_;
+  const SamplingOptions& options_;
+  const ToleranceField field_;
+  std::vector<ArcChain> chains_;
+};
+
+void append(const FaceDps& face, PartDps& out) {
+  const auto planes = static_cast<std::uint32_t>(out.planes.size()), lines = static_cast<std::uint32_t>(out.lines.size());
+  const auto arcs = static_cast<std::uint32_t>(out.arcs.size()), ellipses = static_cast<std::uint32_t>(out.ellipses.size());
+  for (QuadricDp dp : face.dps.dps) {
+    dp.first_plane += planes, dp.first_line += lines, dp.first_arc += arcs, dp.first_ellipse += ellipses;
+    out.dps.push_back(dp);
+  }
+  out.bound_px = std::max(out.bound_px, face.dps.bound_px);
+  out.planes.insert(out.planes.end(), face.dps.planes.begin(), face.dps.planes.end());
+  out.lines.insert(out.lines.end(), face.dps.lines.begin(), face.dps.lines.end());
+  out.arcs.insert(out.arcs.end(), face.dps.arcs.begin(), face.dps.arcs.end());
+  out.ellipses.insert(out.ellipses.end(), face.dps.ellipses.begin(), face.dps.ellipses.end());
+}
+
+}  // namespace
+
+Result<DpScene> sample_quadric_dps(const Model& model, const SamplingOptions& options) {
+  if (!options.camera && !(options.tolerance > 0)) return {StatusCode::invalid_argument, "the tolerance must be above 0"};
+  DpScene scene;
+  scene.parts.resize(model.parts.size());
+  std::size_t total = 0;
+  for (const Part& part : model.parts) total += part.faces.size();
+  std::atomic<std::size_t> done{0};
+  std::atomic<bool> stop{false};
+  for (std::uint32_t p = 0; p < model.parts.size(); ++p) {
+    const Part& part = model.parts[p];
+    const PartSampler sampler(model, p, options);
+    std::vector<FaceDps> faces(part.faces.size());
+    parallel_for(faces.size(), [&](std::size_t i) {
+      if (stop) return;
+      sampler.sample_face(static_cast<std::uint32_t>(i), faces[i]);
+      const std::size_t now = ++done;
+      if ((now & 63) == 0 && !report(options.progress, "prepare", static_cast<double>(now) / static_cast<double>(total))) stop = true;
+    }, 4);
+    if (stop) return {StatusCode::cancelled, "cancelled"};
+    PartDps& out = scene.parts[p];
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      append(faces[i], out);
+      if (faces[i].failure.empty()) continue;
+      const std::string& name = part.faces[i].name;
+      out.skipped.push_back({name.empty() ? "face " + std::to_string(i + 1) + " of " + part.name : name, faces[i].failure, 1});
+    }
+    scene.bound_px = std::max(scene.bound_px, out.bound_px);
+    for (const QuadricDp& dp : out.dps) {
+      scene.bound = std::max(scene.bound, dp.bound);
+      if (!dp.speck) scene.normal_bound = std::max(scene.normal_bound, dp.normal_bound);
+    }
+  }
+  return scene;
+}
+
+}  // namespace dupin
