@@ -1,0 +1,170 @@
+#include "convert.h"
+
+#include <BRep_Builder.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopTools_MapOfShape.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Iterator.hxx>
+
+#include <map>
+
+#include "geometry.h"
+#include "part_builder.h"
+
+namespace dupin::reader {
+namespace {
+
+/// A piece and where it stands in its item.
+struct Piece {
+  TopoDS_Shape shape;  ///< without location
+  TopLoc_Location location;
+  bool loose = false;  ///< no solid: the faces outside of solids
+};
+
+// Solids anywhere below, each on its own; shells and faces outside of solids together.
+std::vector<Piece> pieces_of(const TopoDS_Shape& shape) {
+  std::vector<Piece> pieces;
+  for (TopExp_Explorer e(shape, TopAbs_SOLID); e.More(); e.Next())
+    pieces.push_back({e.Current().Located(TopLoc_Location()), e.Current().Location(), false});
+  const TopExp_Explorer loose(shape, TopAbs_FACE, TopAbs_SOLID);
+  if (loose.More()) pieces.push_back({shape.Located(TopLoc_Location()), shape.Location(), true});
+  return pieces;
+}
+
+TopoDS_Shape together(const std::vector<TopoDS_Face>& faces) {
+  TopoDS_Compound all;
+  BRep_Builder builder;
+  builder.MakeCompound(all);
+  for (const TopoDS_Face& face : faces) builder.Add(all, face);
+  return all;
+}
+
+bool same_look(const PartSource& a, const PartSource& b) {
+  if (a.name != b.name || a.color != b.color || a.faces.size() != b.faces.size()) return false;
+  for (std::size_t i = 0; i < a.faces.size(); ++i)
+    if (a.faces[i].color != b.faces[i].color || a.faces[i].name != b.faces[i].name) return false;
+  return true;
+}
+
+class Conversion {
+ public:
+  Conversion(const SourceDocument& document, const MeshOptions& mesh, const Stage& stage)
+      : document_(document), mesh_(mesh), stage_(stage) {}
+
+  Model run() {
+    model_.format = document_.format;
+    model_.unit_note = document_.unit_note;
+    model_.notes = document_.notes;
+    model_.skipped = document_.skipped;
+    for (std::size_t i = 0; i < document_.items.size(); ++i) {
+      stage_("converting", static_cast<double>(i) / static_cast<double>(document_.items.size()));
+      add_item(document_.items[i]);
+    }
+    finish_skipped();
+    if (mesh_.deflection > 0) add_meshes();
+    return std::move(model_);
+  }
+
+ private:
+  struct Known {
+    PartSource source;
+    std::uint32_t part = 0;
+  };
+  struct Built {
+    TopoDS_Shape shape;
+    std::vector<TopoDS_Face> faces;
+    std::vector<SkippedFace> skipped;
+    std::uint32_t instances = 0;
+  };
+
+  void add_item(const SourceItem& item) {
+    const std::vector<Piece> pieces = pieces_of(item.shape);
+    for (const Piece& piece : pieces) {
+      const std::uint32_t part = part_of(item, piece);
+      ++built_[part].instances;
+      if (model_.parts[part].faces.empty()) continue;
+      Instance instance;
+      instance.part = part;
+      instance.to_world = item.placement * to_affine(piece.location.Transformation());
+      instance.color = item.instance_color;
+      instance.name = item.path;
+      model_.instances.push_back(std::move(instance));
+    }
+  }
+
+  std::uint32_t part_of(const SourceItem& item, const Piece& piece) {
+    PartSource source = describe(item, piece);
+    auto& known = known_[{piece.shape.TShape().get(), static_cast<int>(piece.shape.Orientation()), piece.loose}];
+    for (const Known& k : known)
+      if (same_look(k.source, source)) return k.part;
+    BuiltPart built = build_part(source);
+    const auto index = static_cast<std::uint32_t>(model_.parts.size());
+    for (std::string& n : built.notes)
+      model_.notes.push_back((source.name.empty() ? "part " + std::to_string(index + 1) : source.name) + ": " + n);
+    model_.parts.push_back(std::move(built.part));
+    built_.push_back({piece.loose ? together(built.shapes) : piece.shape, std::move(built.shapes),
+                      std::move(built.skipped), 0});
+    known.push_back({std::move(source), index});
+    return index;
+  }
+
+  static PartSource describe(const SourceItem& item, const Piece& piece) {
+    PartSource source;
+    source.name = item.part_name;
+    source.color = item.part_color;
+    if (const auto color = style(item, piece.shape.Located(piece.location))) source.color = color;
+    TopExp_Explorer faces = piece.loose ? TopExp_Explorer(piece.shape, TopAbs_FACE, TopAbs_SOLID)
+                                        : TopExp_Explorer(piece.shape, TopAbs_FACE);
+    for (; faces.More(); faces.Next()) {
+      FaceSource face;
+      face.face = TopoDS::Face(faces.Current());
+      const TopoDS_Shape in_item = face.face.Moved(piece.location);
+      face.color = style(item, in_item);
+      if (item.styles)
+        if (const std::string* name = item.styles->names.Seek(in_item)) face.name = *name;
+      source.faces.push_back(std::move(face));
+    }
+    return source;
+  }
+
+  static std::optional<Color> style(const SourceItem& item, const TopoDS_Shape& shape) {
+    if (!item.styles) return std::nullopt;
+    const Color* color = item.styles->colors.Seek(shape);
+    return color ? std::optional(*color) : std::nullopt;
+  }
+
+  // A part's skipped faces are missing from each of its instances.
+  void finish_skipped() {
+    for (const Built& built : built_)
+      for (SkippedFace skipped : built.skipped) {
+        skipped.count = built.instances;
+        model_.skipped.push_back(std::move(skipped));
+      }
+  }
+
+  void add_meshes() {
+    stage_("tessellating", 0);
+    std::vector<TopoDS_Shape> shapes;
+    for (const Built& built : built_) shapes.push_back(built.shape);
+    const double deflection = mesh_.deflection * bounding_box(model_).diagonal();
+    if (!(deflection > 0)) return;
+    model_.mesh_seconds = mesh_shapes(shapes, deflection, mesh_.angle_radians);
+    for (std::size_t i = 0; i < built_.size(); ++i) take_mesh(built_[i].faces, model_.parts[i]);
+  }
+
+  const SourceDocument& document_;
+  const MeshOptions& mesh_;
+  const Stage& stage_;
+  Model model_;
+  std::vector<Built> built_;
+  std::map<std::tuple<const void*, int, bool>, std::vector<Known>> known_;
+};
+
+}  // namespace
+
+Model convert(const SourceDocument& document, const MeshOptions& mesh, const Stage& stage) {
+  return Conversion(document, mesh, stage).run();
+}
+
+}  // namespace dupin::reader

@@ -1,0 +1,213 @@
+#include "curve_fit.h"
+
+#include <algorithm>
+#include <functional>
+
+namespace dupin::reader {
+namespace {
+
+constexpr int kGrid = 16;           // points a side of the search for a projection's beginning
+constexpr int kNewtonSteps = 30;
+constexpr int kFirstPieces = 8;
+constexpr int kMaxDepth = 10;       // halvings of a first piece
+constexpr int kChecksPerPiece = 3;  // inside each piece
+
+template <class V>
+struct Node {
+  double t = 0;
+  V point{}, tangent{};
+};
+
+template <class V>
+V hermite(const Node<V>& a, const Node<V>& b, double t) {
+  const double h = b.t - a.t, s = (t - a.t) / h, r = 1 - s;
+  return a.point * (r * r * (1 + 2 * s)) + b.point * (s * s * (1 + 2 * r)) + a.tangent * (h * s * r * r) -
+         b.tangent * (h * r * s * s);
+}
+
+template <class V>
+BsplineOf<V> to_spline(const std::vector<Node<V>>& nodes) {
+  BsplineOf<V> spline;
+  spline.degree = 3;
+  spline.knots.assign(4, nodes.front().t);
+  spline.poles.push_back(nodes.front().point);
+  for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+    const Node<V>&a = nodes[i], &b = nodes[i + 1];
+    const double third = (b.t - a.t) / 3;
+    spline.poles.push_back(a.point + a.tangent * third);
+    spline.poles.push_back(b.point - b.tangent * third);
+    spline.knots.insert(spline.knots.end(), i + 2 < nodes.size() ? 2 : 4, b.t);
+  }
+  spline.poles.push_back(nodes.back().point);
+  return spline;
+}
+
+// Halves [a, b] until `error` of the cubic is within the tolerance at the checked parameters; appends b.
+template <class V>
+bool refine(const Node<V>& a, const Node<V>& b, int depth, double tolerance,
+            const std::function<Node<V>(double, const Node<V>&)>& node_at,
+            const std::function<double(double, const V&)>& error, std::vector<Node<V>>& nodes) {
+  double worst = 0;
+  for (int i = 1; i <= kChecksPerPiece; ++i) {
+    const double t = a.t + (b.t - a.t) * i / (kChecksPerPiece + 1);
+    worst = std::max(worst, error(t, hermite(a, b, t)));
+  }
+  if (worst <= tolerance) return nodes.push_back(b), true;
+  if (depth == 0 || !std::isfinite(worst)) return nodes.push_back(b), false;
+  const Node<V> middle = node_at((a.t + b.t) / 2, a);
+  const bool left = refine(a, middle, depth - 1, tolerance, node_at, error, nodes);
+  return refine(middle, b, depth - 1, tolerance, node_at, error, nodes) && left;
+}
+
+std::vector<double> first_parameters(std::vector<double> stops, double t0, double t1) {
+  stops.insert(stops.begin(), t0);
+  stops.push_back(t1);
+  std::vector<double> result{t0};
+  const double longest = (t1 - t0) / kFirstPieces;
+  for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
+    const int pieces = std::max(1, static_cast<int>(std::ceil((stops[i + 1] - stops[i]) / longest - 1e-9)));
+    for (int k = 1; k <= pieces; ++k) result.push_back(stops[i] + (stops[i + 1] - stops[i]) * k / pieces);
+  }
+  return result;
+}
+
+// d with |Su·d.x + Sv·d.y - w| smallest; the damping keeps it bounded where the partials are parallel or vanish.
+Vec2 tangent_parameters(const SurfaceJet& s, const Vec3& w) {
+  const double e = dot(s.pu, s.pu), f = dot(s.pu, s.pv), g = dot(s.pv, s.pv);
+  const double a = e + 1e-14 * g, c = g + 1e-14 * e, det = a * c - f * f;
+  if (!(det > 1e-24 * (e + g) * (e + g))) {
+    if (e >= g) return e > 0 ? Vec2{dot(s.pu, w) / e, 0} : Vec2{};
+    return {0, dot(s.pv, w) / g};
+  }
+  const double x = dot(s.pu, w), y = dot(s.pv, w);
+  return {(c * x - f * y) / det, (a * y - f * x) / det};
+}
+
+Vec2 clamp_to(const Surface& surface, const Box2& domain, Vec2 q) {
+  if (period_u(surface) == 0) q.x = std::clamp(q.x, domain.lo.x, domain.hi.x);
+  if (period_v(surface) == 0) q.y = std::clamp(q.y, domain.lo.y, domain.hi.y);
+  return q;
+}
+
+// Levenberg's damped Newton steps on |S(u,v) - p|²; every accepted step gets nearer.
+Vec2 newton(const Surface& surface, const Box2& domain, const Vec3& p, Vec2 q) {
+  double damping = 0;
+  SurfaceJet s = evaluate(surface, q.x, q.y, 2);
+  double best = distance(s.p, p);
+  for (int i = 0; i < kNewtonSteps; ++i) {
+    const Vec3 r = s.p - p;
+    const double gu = dot(s.pu, r), gv = dot(s.pv, r);
+    double a = dot(s.pu, s.pu), b = dot(s.pu, s.pv), c = dot(s.pv, s.pv);
+    const double scale = a + c;
+    const double full_a = a + dot(s.puu, r), full_b = b + dot(s.puv, r), full_c = c + dot(s.pvv, r);
+    if (full_a > 0 && full_a * full_c - full_b * full_b > 1e-8 * a * c) a = full_a, b = full_b, c = full_c;
+    a += damping * scale, c += damping * scale;
+    const double det = a * c - b * b;
+    if (!(det > 0)) {
+      damping = std::max(1e-12, damping * 10);
+      continue;
+    }
+    const Vec2 next = clamp_to(surface, domain, {q.x - (c * gu - b * gv) / det, q.y - (a * gv - b * gu) / det});
+    const SurfaceJet moved = evaluate(surface, next.x, next.y, 2);
+    const double d = distance(moved.p, p);
+    if (!(d <= best)) {
+      damping = std::max(1e-6, damping * 10);
+      continue;
+    }
+    const double step = length(next - q), size = 1 + length(q);
+    q = next, s = moved, best = d, damping *= 0.1;
+    if (step < 1e-15 * size) break;
+  }
+  return q;
+}
+
+}  // namespace
+
+Vec2 project(const Surface& surface, const Box2& domain, const Vec3& p, const Vec2* near) {
+  if (near) return newton(surface, domain, p, *near);
+  Vec2 best = domain.center();
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= kGrid; ++i)
+    for (int j = 0; j <= kGrid; ++j) {
+      const Vec2 q = domain.lo + Vec2{domain.size().x * i / kGrid, domain.size().y * j / kGrid};
+      const double d = distance(point_at(surface, q.x, q.y), p);
+      if (d < least) least = d, best = q;
+    }
+  return newton(surface, domain, p, best);
+}
+
+std::optional<Curve2> fit_pcurve(const Surface& surface, const Box2& domain, const Curve3& curve, double t0,
+                                 double t1, double tolerance) {
+  const auto node_near = [&](double t, const Vec2* near) {
+    const CurveJet<Vec3> c = evaluate(curve, t, 1);
+    const Vec2 q = project(surface, domain, c[0], near);
+    return Node<Vec2>{t, q, tangent_parameters(evaluate(surface, q.x, q.y, 1), c[1])};
+  };
+  // The middle is the safest place to begin a search: ends may lie at poles and on seams.
+  const std::vector<double> parameters = first_parameters(breaks(curve, t0, t1, 2), t0, t1);
+  std::vector<Node<Vec2>> coarse(parameters.size());
+  const std::size_t middle = parameters.size() / 2;
+  coarse[middle] = node_near(parameters[middle], nullptr);
+  const auto march = [&](std::size_t from, std::size_t to) {
+    // Linear extrapolation in small steps keeps to the same turn of a periodic surface.
+    Node<Vec2> at = coarse[from];
+    for (int i = 1; i <= 8; ++i) {
+      const double t = parameters[from] + (parameters[to] - parameters[from]) * i / 8;
+      const Vec2 guess = clamp_to(surface, domain, at.point + at.tangent * (t - at.t));
+      const Node<Vec2> ahead = node_near(t, &guess), stay = node_near(t, &at.point);
+      const Vec3 p = point_at(curve, t);
+      const auto miss = [&](const Node<Vec2>& n) { return distance(point_at(surface, n.point.x, n.point.y), p); };
+      at = miss(stay) < 0.5 * miss(ahead) - 1e-12 ? stay : ahead;
+    }
+    coarse[to] = at;
+  };
+  for (std::size_t i = middle; i + 1 < coarse.size(); ++i) march(i, i + 1);
+  for (std::size_t i = middle; i > 0; --i) march(i, i - 1);
+
+  double own_distance = 0;
+  for (const Node<Vec2>& n : coarse)
+    own_distance = std::max(own_distance, distance(point_at(surface, n.point.x, n.point.y), point_at(curve, n.t)));
+  const std::function<double(double, const Vec2&)> error = [&](double t, const Vec2& q) {
+    return distance(point_at(surface, q.x, q.y), point_at(curve, t));
+  };
+  const std::function<Node<Vec2>(double, const Node<Vec2>&)> node_at = [&](double t, const Node<Vec2>& before) {
+    const Vec2 guess = clamp_to(surface, domain, before.point + before.tangent * (t - before.t));
+    return node_near(t, &guess);
+  };
+  std::vector<Node<Vec2>> nodes{coarse.front()};
+  bool reached = true;
+  for (std::size_t i = 0; i + 1 < coarse.size(); ++i)
+    reached = refine(coarse[i], coarse[i + 1], kMaxDepth, own_distance + tolerance, node_at, error, nodes) && reached;
+  for (const Node<Vec2>& n : nodes)
+    if (!std::isfinite(n.point.x + n.point.y + n.tangent.x + n.tangent.y)) return std::nullopt;
+  if (!reached) return std::nullopt;
+  return Curve2{to_spline(nodes)};
+}
+
+std::optional<Curve3> fit_curve(const Surface& surface, const Curve2& pcurve, double t0, double t1,
+                                double tolerance) {
+  const auto exact = [&](double t) {
+    const CurveJet<Vec2> q = evaluate(pcurve, t, 1);
+    const SurfaceJet s = evaluate(surface, q[0].x, q[0].y, 1);
+    return Node<Vec3>{t, s.p, s.pu * q[1].x + s.pv * q[1].y};
+  };
+  const std::function<Node<Vec3>(double, const Node<Vec3>&)> node_at = [&](double t, const Node<Vec3>&) {
+    return exact(t);
+  };
+  const std::function<double(double, const Vec3&)> error = [&](double t, const Vec3& p) {
+    const Vec2 q = point_at(pcurve, t);
+    return distance(point_at(surface, q.x, q.y), p);
+  };
+  const std::vector<double> parameters = first_parameters(breaks(pcurve, t0, t1, 2), t0, t1);
+  std::vector<Node<Vec3>> nodes{exact(t0)};
+  bool reached = true;
+  for (std::size_t i = 0; i + 1 < parameters.size(); ++i)
+    reached = refine(exact(parameters[i]), exact(parameters[i + 1]), kMaxDepth, tolerance, node_at, error, nodes) &&
+              reached;
+  if (!reached) return std::nullopt;
+  for (const Node<Vec3>& n : nodes)
+    if (!is_finite(n.point) || !is_finite(n.tangent)) return std::nullopt;
+  return Curve3{to_spline(nodes)};
+}
+
+}  // namespace dupin::reader

@@ -1,0 +1,20 @@
+// Boxes of curves and faces in space.
+#ifndef DUPIN_CAD_IMPORT_READER_FACE_BOUNDS_H
+#define DUPIN_CAD_IMPORT_READER_FACE_BOUNDS_H
+
+#include "../../nurbs/model.h"
+
+namespace dupin::reader {
+
+/// Contains the curve over [t0, t1], to within rounding.
+Box3 curve_bounds(const Curve3& curve, double t0, double t1);
+
+/// Contains the surface over `uv`; tight for the analytic kinds.
+Box3 surface_bounds(const Surface& surface, const Box2& uv);
+
+/// Contains the face.
+Box3 face_bounds(const Part& part, const Face& face);
+
+}  // namespace dupin::reader
+
+#endif

@@ -1,0 +1,181 @@
+#include "face_builder.h"
+
+#include <BRepTools.hxx>
+#include <BRep_Tool.hxx>
+#include <Geom_Surface.hxx>
+
+#include <algorithm>
+#include <cmath>
+
+#include "curve_fit.h"
+#include "curve_tools.h"
+#include "geometry.h"
+#include "loops.h"
+#include "search_domain.h"
+
+namespace dupin::reader {
+namespace {
+
+// A pcurve may leave its edge by this part of the piece's size before a better one is looked for: far below a pixel.
+constexpr double kAgreement = 1e-6;
+// What a fitted pcurve may add.
+constexpr double kFit = 1e-8;
+// Loops with larger gaps than this part of the piece's size are no loops.
+constexpr double kLargestGap = 1e-3;
+
+class FaceBuilder {
+ public:
+  FaceBuilder(const FaceTask& task, const Surface& surface, const std::vector<Edge>& edges, double size)
+      : task_(task), surface_(surface), edges_(edges), size_(size) {}
+
+  FaceResult run() {
+    result_.face.reversed = task_.shape.Orientation() == TopAbs_REVERSED;
+    result_.face.tolerance = BRep_Tool::Tolerance(task_.shape);
+    for (const auto& wire : task_.wires) add_wire(wire);
+    if (result_.skip) return std::move(result_);
+    if (winding_u_ != 0 || winding_v_ != 0 || has_winding_) result_.needs_repair = true;
+    order_loops();
+    set_box();
+    return std::move(result_);
+  }
+
+ private:
+  void add_wire(const std::vector<WireEdge>& wire) {
+    std::vector<EdgeUse> uses;
+    for (const WireEdge& e : wire) {
+      std::optional<EdgeUse> use = make_use(e);
+      if (use) uses.push_back(std::move(*use));
+    }
+    if (uses.empty()) return;
+    WireLoops loops = assemble_loops(surface_, std::move(uses), result_.face.tolerance);
+    winding_u_ += loops.winding_u, winding_v_ += loops.winding_v;
+    has_winding_ = has_winding_ || loops.winding_u != 0 || loops.winding_v != 0;
+    result_.largest_gap = std::max(result_.largest_gap, loops.gap);
+    if (loops.misses_curve) result_.needs_repair = true;
+    for (auto& loop : loops.loops) loops_.push_back(std::move(loop));
+  }
+
+  std::optional<EdgeUse> make_use(const WireEdge& wire_edge) {
+    const Edge& edge = edges_[wire_edge.numbers.edge];
+    EdgeUse use;
+    use.trim.edge = wire_edge.numbers.edge;
+    use.trim.reversed = wire_edge.reversed;
+    use.trim.degenerate = !edge.curve;
+    use.t0 = edge.t0, use.t1 = edge.t1;
+    use.from = wire_edge.reversed ? wire_edge.numbers.last : wire_edge.numbers.first;
+    use.to = wire_edge.reversed ? wire_edge.numbers.first : wire_edge.numbers.last;
+    use.tolerance = std::max(edge.tolerance, wire_edge.numbers.vertex_tolerance);
+    const bool bounded = std::isfinite(edge.t0) && std::isfinite(edge.t1) && edge.t0 < edge.t1 &&
+                         std::abs(edge.t0) < 1e50 && std::abs(edge.t1) < 1e50;
+    if (!bounded) return skip("an edge of it has no bounded range"), std::nullopt;
+
+    const StoredPcurve stored = stored_pcurve(wire_edge.shape, task_.shape);
+    use.trim.seam = stored.seam;
+    std::optional<Curve2> pcurve = matched(stored, edge);
+    double deviation = pcurve && edge.curve ? deviation_of(*pcurve, edge) : 0;
+    if (edge.curve && (!pcurve || !(deviation <= kAgreement * size_))) refit(edge, stored.seam, pcurve, deviation);
+    if (!pcurve) {
+      if (!edge.curve) return std::nullopt;  // a collapsed side: the loop bridges it
+      return skip("an edge's curve could not be laid onto its surface"), std::nullopt;
+    }
+    use.trim.pcurve = std::move(*pcurve);
+    result_.deviations.emplace_back(use.trim.edge, deviation);
+    return use;
+  }
+
+  // The stored pcurve over the edge's own parameters.
+  static std::optional<Curve2> matched(const StoredPcurve& stored, const Edge& edge) {
+    if (!stored.curve) return std::nullopt;
+    const double b = (stored.t1 - stored.t0) / (edge.t1 - edge.t0);
+    if (std::abs(stored.t0 - edge.t0) + std::abs(stored.t1 - edge.t1) <= 1e-12 * (1 + std::abs(edge.t1)))
+      return stored.curve;
+    if (!(b > 0)) return std::nullopt;
+    return reparametrized(*stored.curve, stored.t0 - b * edge.t0, b);
+  }
+
+  double deviation_of(const Curve2& pcurve, const Edge& edge) const {
+    const auto* spline = std::get_if<Bspline3>(&edge.curve->geometry);
+    const int samples = 8 + (spline ? std::min<int>(40, static_cast<int>(spline->poles.size())) : 0);
+    double worst = 0;
+    for (int i = 0; i <= samples; ++i) {
+      const double t = edge.t0 + (edge.t1 - edge.t0) * i / samples;
+      const Vec2 q = point_at(pcurve, t);
+      const double d = distance(point_at(surface_, q.x, q.y), point_at(*edge.curve, t));
+      if (!(d <= worst)) worst = std::isfinite(d) ? d : std::numeric_limits<double>::infinity();
+    }
+    return worst;
+  }
+
+  // Replaces a missing or worse pcurve by the projection of the edge's curve.
+  void refit(const Edge& edge, bool seam, std::optional<Curve2>& pcurve, double& deviation) {
+    if (seam && pcurve) return;  // which side a projection would fall on is anyone's guess
+    std::optional<Curve2> fitted;
+    if (const auto* plane = std::get_if<Plane>(&surface_.geometry)) fitted = in_plane(*edge.curve, plane->frame);
+    if (!fitted || (pcurve && !(deviation_of(*fitted, edge) < 0.5 * deviation))) {
+      if (domain_.empty()) domain_ = search_domain(surface_, edges_, task_.wires);
+      fitted = fit_pcurve(surface_, domain_, *edge.curve, edge.t0, edge.t1, kFit * size_);
+    }
+    if (!fitted) return;
+    const double reached = deviation_of(*fitted, edge);
+    if (pcurve && !(reached < 0.5 * deviation)) return;
+    if (pcurve) ++result_.refitted;
+    pcurve = std::move(fitted), deviation = reached;
+  }
+
+  void skip(const char* reason) {
+    if (!result_.skip) result_.skip = reason;
+  }
+
+  // The outer loop, which encloses most, first.
+  void order_loops() {
+    std::vector<std::pair<double, std::size_t>> areas;
+    for (std::size_t i = 0; i < loops_.size(); ++i) areas.emplace_back(std::abs(signed_area(loops_[i])), i);
+    if (!areas.empty()) std::iter_swap(areas.begin(), std::max_element(areas.begin(), areas.end(), [](auto& a, auto& b) {
+      return a.first < b.first;
+    }));
+    for (const auto& [area, i] : areas) {
+      Loop loop;
+      for (EdgeUse& use : loops_[i]) {
+        result_.face.uv_box.add(bounds(use.trim.pcurve, use.t0, use.t1).lo);
+        result_.face.uv_box.add(bounds(use.trim.pcurve, use.t0, use.t1).hi);
+        loop.push_back(std::move(use.trim));
+      }
+      result_.face.loops.push_back(std::move(loop));
+    }
+    result_.face.tolerance = std::max(result_.face.tolerance, result_.largest_gap);
+    if (result_.largest_gap > kLargestGap * size_) result_.needs_repair = true;
+  }
+
+  void set_box() {
+    Box2& box = result_.face.uv_box;
+    if (result_.face.loops.empty()) {
+      TopLoc_Location location;
+      BRep_Tool::Surface(task_.shape, location)->Bounds(box.lo.x, box.hi.x, box.lo.y, box.hi.y);
+      const double largest = std::max({-box.lo.x, -box.lo.y, box.hi.x, box.hi.y});
+      if (!(largest < 1e50)) skip("it has no boundary, and its surface none either");
+      return;
+    }
+    const Box2 whole = domain(surface_);
+    if (period_u(surface_) == 0) box.lo.x = std::max(box.lo.x, whole.lo.x), box.hi.x = std::min(box.hi.x, whole.hi.x);
+    if (period_v(surface_) == 0) box.lo.y = std::max(box.lo.y, whole.lo.y), box.hi.y = std::min(box.hi.y, whole.hi.y);
+    if (!(box.lo.x < box.hi.x && box.lo.y < box.hi.y)) skip("its boundary encloses nothing");
+  }
+
+  const FaceTask& task_;
+  const Surface& surface_;
+  const std::vector<Edge>& edges_;
+  double size_;
+  Box2 domain_;
+  std::vector<std::vector<EdgeUse>> loops_;
+  int winding_u_ = 0, winding_v_ = 0;
+  bool has_winding_ = false;
+  FaceResult result_;
+};
+
+}  // namespace
+
+FaceResult build_face(const FaceTask& task, const Surface& surface, const std::vector<Edge>& edges, double size) {
+  return FaceBuilder(task, surface, edges, size).run();
+}
+
+}  // namespace dupin::reader

@@ -1,0 +1,215 @@
+#include "part_builder.h"
+
+#include <BRep_Tool.hxx>
+#include <Geom_Surface.hxx>
+#include <TopLoc_Location.hxx>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+#include "../../core/parallel.h"
+#include "curve_fit.h"
+#include "face_builder.h"
+#include "geometry.h"
+#include "loops.h"
+#include "part_checks.h"
+#include "search_domain.h"
+#include "topology.h"
+
+namespace dupin::reader {
+namespace {
+
+// What a space curve made from a pcurve may differ from it, as a part of the piece's size.
+constexpr double kCurveFit = 1e-9;
+
+class SurfaceTable {
+ public:
+  /// The index of the face's surface in its piece's space; none for a kind that cannot be had.
+  std::optional<std::uint32_t> add(const TopoDS_Face& face, std::vector<Surface>& surfaces) {
+    TopLoc_Location location;
+    Handle(Geom_Surface) surface = untrimmed(BRep_Tool::Surface(face, location));
+    if (surface.IsNull()) return std::nullopt;
+    for (const auto& [known, index] : by_handle_[surface.get()])
+      if (known.IsEqual(location)) return index;
+    Handle(Geom_Surface) placed = surface;
+    if (!location.IsIdentity()) placed = Handle(Geom_Surface)::DownCast(surface->Transformed(location.Transformation()));
+    std::optional<Surface> converted = to_surface(placed);
+    if (!converted) return std::nullopt;
+    surfaces.push_back(std::move(*converted));
+    const auto index = static_cast<std::uint32_t>(surfaces.size() - 1);
+    by_handle_[surface.get()].emplace_back(location, index);
+    return index;
+  }
+
+ private:
+  std::map<const Geom_Surface*, std::vector<std::pair<TopLoc_Location, std::uint32_t>>> by_handle_;
+};
+
+class PartBuilder {
+ public:
+  explicit PartBuilder(const PartSource& source) : source_(source) {}
+
+  BuiltPart run() {
+    built_.part.name = source_.name;
+    built_.part.color = source_.color;
+    collect();
+    convert_edges();
+    complete_edges();
+    build_faces();
+    take_faces();
+    drop_unused();
+    set_part_box(built_.part);
+    mark_smooth_edges(built_.part);
+    if (built_.skipped.empty()) mark_closed(built_.part);
+    return std::move(built_);
+  }
+
+ private:
+  struct Pending {
+    FaceTask task;
+    std::optional<std::uint32_t> surface;
+    FaceResult result;
+  };
+
+  void collect() {
+    SurfaceTable table;
+    for (const FaceSource& face : source_.faces) {
+      Pending p;
+      p.task.shape = face.face;
+      p.surface = table.add(face.face, built_.part.surfaces);
+      p.task.wires = wires_of(face.face, topology_);
+      pending_.push_back(std::move(p));
+    }
+  }
+
+  void convert_edges() {
+    std::vector<Edge>& edges = built_.part.edges;
+    edges.resize(topology_.edge_count());
+    parallel_for(edges.size(), [&](std::size_t i) { edges[i] = to_edge(topology_.edge(i)); }, 64);
+    Box3 box;
+    for (const Edge& edge : edges)
+      if (edge.curve)
+        for (int i = 0; i <= 8; ++i) {
+          const Vec3 p = point_at(*edge.curve, edge.t0 + (edge.t1 - edge.t0) * i / 8);
+          if (is_finite(p)) box.add(p);
+        }
+    size_ = box.diagonal();
+    if (size_ == 0) size_ = 1;
+  }
+
+  // Edges that have a pcurve but no curve in space, and are no points, get one.
+  void complete_edges() {
+    int made = 0;
+    for (const Pending& p : pending_)
+      for (const auto& wire : p.task.wires)
+        for (const WireEdge& use : wire) {
+          Edge& edge = built_.part.edges[use.numbers.edge];
+          if (edge.curve || !p.surface || BRep_Tool::Degenerated(use.shape)) continue;
+          const StoredPcurve stored = stored_pcurve(use.shape, p.task.shape);
+          if (!stored.curve || !(stored.t0 < stored.t1)) continue;
+          edge.t0 = stored.t0, edge.t1 = stored.t1;
+          edge.curve = fit_curve(built_.part.surfaces[*p.surface], *stored.curve, edge.t0, edge.t1, kCurveFit * size_);
+          if (edge.curve) ++made;
+        }
+    if (made > 0) note(made, "edge had no curve in space: made from its curve on a face",
+                       "edges had no curves in space: made from their curves on a face");
+  }
+
+  void build_faces() {
+    parallel_for(
+        pending_.size(),
+        [&](std::size_t i) {
+          Pending& p = pending_[i];
+          if (p.surface)
+            p.result = build_face(p.task, built_.part.surfaces[*p.surface], built_.part.edges, size_);
+          else
+            p.result.skip = "its surface is of a kind that is not supported";
+        },
+        8);
+  }
+
+  void take_faces() {
+    int refitted = 0;
+    for (std::size_t i = 0; i < pending_.size(); ++i) {
+      Pending& p = pending_[i];
+      const FaceSource& source = source_.faces[i];
+      if (!p.result.skip && p.result.needs_repair) p.result.skip = "its boundary does not close";
+      if (p.result.skip) {
+        built_.skipped.push_back({face_name(i), *p.result.skip, 1});
+        continue;
+      }
+      refitted += p.result.refitted;
+      Face face = std::move(p.result.face);
+      face.surface = *p.surface;
+      face.color = source.color;
+      face.name = source.name;
+      number_new_edges(face);
+      for (const auto& [edge, deviation] : p.result.deviations)
+        built_.part.edges[edge].tolerance = std::max(built_.part.edges[edge].tolerance, deviation);
+      built_.part.faces.push_back(std::move(face));
+      built_.shapes.push_back(source.face);
+    }
+    if (refitted > 0) note(refitted, "edge's curve on a face lay off the edge: projected anew",
+                           "edges' curves on faces lay off the edges: projected anew");
+  }
+
+  void number_new_edges(Face& face) {
+    for (Loop& loop : face.loops)
+      for (Trim& trim : loop) {
+        if (trim.edge != kNewDegenerateEdge) continue;
+        trim.edge = static_cast<std::uint32_t>(built_.part.edges.size());
+        built_.part.edges.push_back({std::nullopt, 0, 1, face.tolerance, false});
+      }
+  }
+
+  // Edges of faces that were skipped may have anything in them.
+  void drop_unused() {
+    std::vector<std::uint32_t> number(built_.part.edges.size(), kNewDegenerateEdge);
+    std::vector<Edge> used;
+    for (Face& face : built_.part.faces)
+      for (Loop& loop : face.loops)
+        for (Trim& trim : loop) {
+          std::uint32_t& n = number[trim.edge];
+          if (n == kNewDegenerateEdge) {
+            n = static_cast<std::uint32_t>(used.size());
+            used.push_back(std::move(built_.part.edges[trim.edge]));
+          }
+          trim.edge = n;
+        }
+    built_.part.edges = std::move(used);
+    std::vector<std::uint32_t> surface_number(built_.part.surfaces.size(), 0);
+    std::vector<Surface> surfaces;
+    std::vector<bool> seen(built_.part.surfaces.size(), false);
+    for (Face& face : built_.part.faces) {
+      if (!seen[face.surface]) {
+        seen[face.surface] = true;
+        surface_number[face.surface] = static_cast<std::uint32_t>(surfaces.size());
+        surfaces.push_back(std::move(built_.part.surfaces[face.surface]));
+      }
+      face.surface = surface_number[face.surface];
+    }
+    built_.part.surfaces = std::move(surfaces);
+  }
+
+  std::string face_name(std::size_t i) const {
+    if (!source_.faces[i].name.empty()) return source_.faces[i].name;
+    return "face " + std::to_string(i + 1) + " of " + (source_.name.empty() ? "the part" : source_.name);
+  }
+
+  void note(int count, const char* one, const char* many) {
+    built_.notes.push_back(std::to_string(count) + " " + (count == 1 ? one : many));
+  }
+
+  const PartSource& source_;
+  BuiltPart built_;
+  Topology topology_;
+  std::vector<Pending> pending_;
+  double size_ = 1;
+};
+
+}  // namespace
+
+BuiltPart build_part(const PartSource& source) { return PartBuilder(source).run(); }
+
+}  // namespace dupin::reader
