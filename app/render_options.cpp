@@ -1,0 +1,129 @@
+#include "render_options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "colors.h"
+
+namespace dupin::app {
+namespace {
+
+std::string extension(const std::string& path) {
+  const auto dot = path.rfind('.');
+  if (dot == std::string::npos || path.find('/', dot) != std::string::npos) return {};
+  std::string text = path.substr(dot);
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+/// The primitives that the command's contract names; those of later versions are known so that they can be refused by name.
+std::string check_primitive(const std::string& name) {
+  static const std::vector<std::string> now{"auto", "quadric", "triangles"};
+  static const std::vector<std::string> later{"dp", "square", "rectangle", "ellipse", "pop", "qsplat", "amg"};
+  if (std::find(now.begin(), now.end(), name) != now.end()) return {};
+  if (std::find(later.begin(), later.end(), name) != later.end())
+    return "--primitive " + name + " is not in this version (auto, quadric and triangles are)";
+  return name + " not in {auto,quadric,triangles}";
+}
+
+std::string check_color(const std::string& text) {
+  return parse_color(text) ? std::string{} : "'" + text + "' is no colour: #rrggbb, R,G,B or a CSS name";
+}
+
+std::string check_background(const std::string& text) { return text == "none" ? std::string{} : check_color(text); }
+
+void add_quality_options(CLI::App& command, RenderOptions& options) {
+  const char* group = "What is drawn";
+  command.add_option("--primitive", options.primitive, "auto, quadric, or triangles: the tessellated reference")
+      ->check(CLI::Validator(check_primitive, ""))
+      ->type_name("NAME")
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--tolerance", options.tolerance_px, "Largest geometric error on the screen, in pixels (certified)")
+      ->check(CLI::Range(1e-4, 1e3))
+      ->type_name("PX")
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option("--normal-tolerance", options.normal_tolerance_degrees,
+                  "Largest angle between a drawn and the true normal, in degrees (certified)")
+      ->check(CLI::Range(1e-4, 90.0))
+      ->type_name("DEG")
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option("--deflection", options.deflection,
+                  "For triangles: Open CASCADE's linear deflection, as a part of the model's diagonal")
+      ->check(CLI::Range(1e-9, 1.0))
+      ->type_name("D")
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--samples", options.samples, "Samples a pixel (default: 4, for EXR 1)")
+      ->check(CLI::Range(1, 64))
+      ->type_name("N")
+      ->group(group);
+}
+
+void add_look_options(CLI::App& command, RenderOptions& options) {
+  const char* group = "Looks";
+  command.add_flag("--edges,!--no-edges", options.edges, "Draw the edges in which faces meet at an angle (default)")
+      ->group(group);
+  command.add_option("--background", options.background, "A colour, or none")
+      ->check(CLI::Validator(check_background, ""))
+      ->type_name("COLOR")
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--color", options.color, "Draw everything in this colour (default: the file's)")
+      ->check(CLI::Validator(check_color, ""))
+      ->type_name("COLOR")
+      ->group(group);
+  command.add_option("--shading", options.shading, "What the colour shows")
+      ->check(CLI::IsMember({"lit", "normal", "k1", "k2", "mean", "gaussian", "zebra", "face", "primitive"}))
+      ->capture_default_str()
+      ->group(group);
+}
+
+}  // namespace
+
+bool RenderOptions::exr() const { return extension(output) == ".exr"; }
+
+Status RenderOptions::check() const {
+  const auto bad = [](std::string why) { return Status{StatusCode::invalid_argument, std::move(why)}; };
+  if (!exr() && extension(output) != ".png") return bad(output + ": a picture's name ends in .png or .exr");
+  if (!exr() && !aovs.empty()) return bad("--aov goes with an EXR; a PNG shows --shading");
+  return {};
+}
+
+std::optional<Color> RenderOptions::uniform_color() const { return color.empty() ? std::nullopt : parse_color(color); }
+
+Color RenderOptions::background_color() const { return parse_color(background).value_or(Color{0, 0, 0, 0}); }
+
+void add_render_options(CLI::App& command, RenderOptions& options) {
+  command.add_option("FILE", options.files, "STEP, IGES, BREP or FCStd; several become one picture")->required();
+  command.add_option("-o,--output", options.output, "The picture: .png or .exr")->required()->type_name("FILE");
+  command.add_option("--stats", options.stats, "Write what was done, as JSON")->type_name("FILE.json");
+  add_view_options(command, options.view);
+  add_quality_options(command, options);
+  add_look_options(command, options);
+  command
+      .add_option("--aov", options.aovs, "Channels of an EXR: color, normal, depth, position, curvature, direction, face, "
+                                         "primitive, uv (default: color,normal,depth)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(
+          {"color", "normal", "depth", "position", "curvature", "direction", "face", "primitive", "uv"}))
+      ->type_name("NAME,...")
+      ->group("Looks");
+  command.add_option("--device", options.device, "Where to draw: auto (EGL, then OSMesa), egl, osmesa")
+      ->check(CLI::IsMember({"auto", "egl", "osmesa"}))
+      ->capture_default_str()
+      ->group("Looks");
+  command.add_option("--repeat", options.repeat, "Draw N frames, for timing")
+      ->check(CLI::Range(1, 1000000))
+      ->type_name("N")
+      ->capture_default_str()
+      ->group("Looks");
+  add_common_options(command, options.common);
+}
+
+}  // namespace dupin::app

@@ -1,0 +1,44 @@
+// What `dupin render` can be asked for.
+#ifndef DUPIN_APP_RENDER_OPTIONS_H
+#define DUPIN_APP_RENDER_OPTIONS_H
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "../nurbs/model.h"
+#include "session.h"
+#include "view.h"
+
+namespace dupin::app {
+
+struct RenderOptions {
+  CommonOptions common;
+  std::vector<std::string> files;
+  std::string output, stats;
+  ViewOptions view;
+  std::string primitive = "auto";
+  double tolerance_px = 0.5, normal_tolerance_degrees = 0.25;
+  double deflection = 1e-3;
+  int samples = 0;  ///< 0: 4, or 1 for an EXR
+  bool edges = true;
+  std::string background = "white", color;
+  std::vector<std::string> aovs;  ///< empty: color, normal, depth
+  std::string shading = "lit", device = "auto";
+  int repeat = 1;
+
+  bool triangles() const { return primitive == "triangles"; }
+  bool exr() const;
+  int sample_count() const { return samples > 0 ? samples : exr() ? 1 : 4; }
+  /// What is wrong with options that are fine each by itself.
+  Status check() const;
+  std::optional<Color> uniform_color() const;
+  /// Alpha 0 for none.
+  Color background_color() const;
+};
+
+void add_render_options(CLI::App& command, RenderOptions& options);
+
+}  // namespace dupin::app
+
+#endif

@@ -1,0 +1,54 @@
+// The statistics of `dupin render` (docs/manual.md, "Statistics").
+#ifndef DUPIN_APP_RENDER_STATS_H
+#define DUPIN_APP_RENDER_STATS_H
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "../nurbs/model.h"
+#include "../sampling/quadric_dp.h"
+
+namespace dupin::app {
+
+/// Seconds of each stage.
+struct StageTimes {
+  double import = 0, prepare = 0, context = 0, upload = 0, first_frame = 0, frame_median = 0, write = 0, total = 0;
+};
+
+/// Face instances of the files: drawn + skipped.size() = total.
+struct FaceReport {
+  std::size_t drawn = 0;
+  std::vector<SkippedFace> skipped;  ///< one entry a face instance
+  std::size_t total() const { return drawn + skipped.size(); }
+};
+/// What the reader left out and what has no DPs.
+FaceReport report_faces(const Model& model, const DpScene& scene);
+/// What the reader left out and what the kernel made no triangles of.
+FaceReport report_faces_of_triangles(const Model& model);
+
+struct CertifiedError {
+  double bound = 0, bound_px = 0, normal_bound_degrees = 0;
+};
+
+struct RenderStats {
+  std::vector<std::string> files;
+  FaceReport faces;
+  std::string primitive;
+  std::uint64_t primitives = 0, bytes = 0, clips = 0;
+  std::optional<CertifiedError> error;  ///< none for triangles
+  StageTimes times;
+  int width = 0, height = 0;
+  std::uint64_t covered_pixels = 0;
+  std::string device, gl_renderer;
+};
+nlohmann::ordered_json to_json(const RenderStats& stats);
+
+/// "import 0.73 s, prepare …" for a person.
+std::string describe(const StageTimes& times);
+
+}  // namespace dupin::app
+
+#endif
