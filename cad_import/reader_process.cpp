@@ -148,8 +148,13 @@ class Watch {
     if (command_.time_limit_seconds > 0 && seconds_since(start_) > command_.time_limit_seconds)
       return failure(StatusCode::limit, "reading took longer than the time limit of " +
                                             seconds_text(command_.time_limit_seconds) + in_stage());
-    if (!report(command_.progress, stage_, fraction_)) return failure(StatusCode::cancelled, "reading was stopped");
-    return {};
+    return report_stage();
+  }
+
+  // Also without news, so that the caller can stop a reader that has none.
+  Status report_stage() const {
+    if (report(command_.progress, stage_, fraction_)) return {};
+    return failure(StatusCode::cancelled, "reading was stopped");
   }
 
   void drain_errors() {
@@ -205,7 +210,7 @@ class Watch {
       std::memcpy(&fraction_, payload.data(), sizeof fraction_);
       if (!(fraction_ >= 0 && fraction_ <= 1)) fraction_ = 0;
       stage_ = last_line(payload.substr(sizeof(double)));
-      return {};
+      return report_stage();
     }
     std::uint32_t code = 0;
     if (kind == FrameKind::failure && payload.size() >= sizeof code) {

@@ -4,20 +4,37 @@
 
 #include "../file_kind.h"
 #include "convert.h"
+#include "unpack.h"
 
 namespace dupin::reader {
+
+namespace {
+
+Result<SourceDocument> read_kind(FileKind kind, const std::string& path, const ReadOptions& options,
+                                 const Stage& stage) {
+  switch (kind) {
+    case FileKind::step: return read_step(path, stage);
+    case FileKind::iges: return read_iges(path, stage);
+    case FileKind::brep_text: return read_brep(path, false, options, stage);
+    case FileKind::brep_binary: return read_brep(path, true, options, stage);
+    case FileKind::zip: return read_fcstd(path, stage);
+    case FileKind::empty: return {StatusCode::unreadable, "the file is empty"};
+    default: return {StatusCode::unreadable, "not a STEP, IGES, BREP or FCStd file"};
+  }
+}
+
+}  // namespace
 
 Result<SourceDocument> read_document(const ImportRequest& request, const Stage& stage) {
   const Result<FileKind> kind = file_kind(request.path);
   if (!kind.ok()) return kind.status();
-  switch (*kind) {
-    case FileKind::step: return read_step(request.path, stage);
-    case FileKind::brep_text: return read_brep(request.path, false, request.read, stage);
-    case FileKind::brep_binary: return read_brep(request.path, true, request.read, stage);
-    case FileKind::empty: return {StatusCode::unreadable, "the file is empty"};
-    default: break;
-  }
-  return {StatusCode::unreadable, "not a STEP, IGES, BREP or FCStd file"};
+  if (*kind != FileKind::gzip) return read_kind(*kind, request.path, request.read, stage);
+  stage("unpacking", 0);
+  const Result<MemoryFile> unpacked = unpack_gzip(request.path);
+  if (!unpacked.ok()) return unpacked.status();
+  const Result<FileKind> inner = file_kind(unpacked->path());
+  if (!inner.ok()) return inner.status();
+  return read_kind(*inner, unpacked->path(), request.read, stage);
 }
 
 Result<Model> import_shapes(const ImportRequest& request, const Stage& stage) {

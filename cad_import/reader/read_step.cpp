@@ -23,9 +23,7 @@ Result<SourceDocument> read_step(const std::string& path, const Stage& stage) {
   stage("building shapes", 0);
   Handle(TDocStd_Document) document = new_xde_document();
   if (!reader.Transfer(document)) return {StatusCode::unreadable, "the STEP file holds no shape that can be built"};
-  SourceDocument out;
-  out.format = "STEP";
-  out.unit_note = "mm";
+  SourceDocument out{"STEP", "mm"};
   add_items(document, out);
   return out;
 }
