@@ -35,7 +35,9 @@ struct BezierPatch {
 /// and for profiles that are offset curves or hyperbolas.
 std::vector<BezierPatch> bezier_patches(const Surface& surface, const Box2& region);
 
-/// The patch over the sub-rectangle [s0,s1]×[t0,t1] of its own parameters, by blossoming (de Casteljau).
+/// The patch over the sub-rectangle [s0,s1]×[t0,t1] of its own parameters, by blossoming (de Casteljau). Where a
+/// direction is an angle the piece is put back into the standard form of an arc, so that the maps below hold for it too;
+/// its parameter is then not an affine function of the whole patch's.
 BezierPatch subpatch(const BezierPatch& patch, double s0, double s1, double t0, double t1);
 
 /// From the patch's own parameter in [0,1] to the surface's u (v), and back.
@@ -51,6 +53,7 @@ Vec3 point_at(const BezierPatch& patch, double s, double t);
 struct BezierCurve3 {
   int degree = 0;
   double t0 = 0, t1 = 1;
+  bool is_angle = false;  ///< a circle's or ellipse's: its parameter is related to the curve's like a patch's to u
   std::vector<Vec4> poles;
 };
 /// The pieces of a curve over [t0, t1]; empty for offset curves and hyperbolas.

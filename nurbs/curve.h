@@ -85,7 +85,18 @@ CurveJet<Vec3> evaluate(const Curve3& curve, double t, int order);
 inline Vec2 point_at(const Curve2& curve, double t) { return evaluate(curve, t, 0)[0]; }
 inline Vec3 point_at(const Curve3& curve, double t) { return evaluate(curve, t, 0)[0]; }
 
-/// Parameters strictly inside (t0, t1) at which the curve is less than `continuity` times differentiable.
+struct ParameterRange {
+  double lo = 0, hi = 0;
+};
+/// The natural parameter domain; infinite where the curve is.
+ParameterRange domain(const Curve2& curve);
+ParameterRange domain(const Curve3& curve);
+/// The period of a circle, an ellipse or a periodic B-spline (or an offset of one); else 0.
+double period(const Curve2& curve);
+double period(const Curve3& curve);
+
+/// Parameters strictly inside (t0, t1) at which the curve is less than `continuity` times continuously
+/// differentiable, judged by its knots' multiplicities; ascending.
 std::vector<double> breaks(const Curve2& curve, double t0, double t1, int continuity);
 std::vector<double> breaks(const Curve3& curve, double t0, double t1, int continuity);
 

@@ -16,58 +16,62 @@ int find_span(std::span<const double> knots, int degree, double t, bool from_lef
   return span;
 }
 
-void basis_derivatives(std::span<const double> knots, int degree, int span, double t, int order, double* out) {
-  // ndu holds the basis functions of every degree (upper triangle) and the knot differences (lower triangle):
-  // Piegl & Tiller, The NURBS Book, algorithm A2.3.
-  const int p = degree;
-  std::array<std::array<double, kMaxDegree + 1>, kMaxDegree + 1> ndu;
-  std::array<double, kMaxDegree + 1> left{}, right{};
-  ndu[0][0] = 1;
-  for (int j = 1; j <= p; ++j) {
-    left[j] = t - knots[span + 1 - j];
-    right[j] = knots[span + j] - t;
+namespace {
+
+// Level q of the triangle turns the q functions of degree q − 1 into the q + 1 of degree q; both the values and the
+// derivatives need the reciprocals of the same knot differences, kept in `inverse`, level after level. The m-th
+// derivatives of degree q come from the (m−1)-th of degree q − 1 by
+//   N'[r] = q (N[r−1] / (k[s+r] − k[s+r−q]) − N[r] / (k[s+r+1] − k[s+r+1−q])).
+// A degree known at compile time unrolls everything.
+template <int kDegree>
+void basis_of_degree(const double* knots, int degree, int span, double t, int order, double* out) {
+  const int p = kDegree > 0 ? kDegree : degree;
+  constexpr int kSize = (kDegree > 0 ? kDegree : kMaxDegree) + 1;
+  double inverse[kSize * (kSize - 1) / 2 + 1];
+  double values[kSize][kSize];  // values[q][0 … q], of degree q
+  values[0][0] = 1;
+  for (int q = 1, base = 0; q <= p; base += q, ++q) {
     double saved = 0;
-    for (int r = 0; r < j; ++r) {
-      ndu[j][r] = right[r + 1] + left[j - r];
-      const double term = ndu[j][r] != 0 ? ndu[r][j - 1] / ndu[j][r] : 0;
-      ndu[r][j] = saved + right[r + 1] * term;
-      saved = left[j - r] * term;
+    for (int r = 0; r < q; ++r) {
+      const double lo = knots[span + 1 - q + r], hi = knots[span + 1 + r];
+      const double reciprocal = hi > lo ? 1 / (hi - lo) : 0;
+      inverse[base + r] = reciprocal;
+      const double term = values[q - 1][r] * reciprocal;
+      values[q][r] = saved + (hi - t) * term;
+      saved = (t - lo) * term;
     }
-    ndu[j][j] = saved;
+    values[q][q] = saved;
   }
-  for (int j = 0; j <= p; ++j) out[j] = ndu[j][p];
-  for (int k = 1; k <= order; ++k)
-    if (k > p)
-      for (int j = 0; j <= p; ++j) out[k * (p + 1) + j] = 0;
-  const int top = std::min(order, p);
-  for (int r = 0; r <= p; ++r) {
-    std::array<std::array<double, kMaxDegree + 1>, 2> a{};
-    int s1 = 0, s2 = 1;
-    a[0][0] = 1;
-    for (int k = 1; k <= top; ++k) {
-      double d = 0;
-      const int rk = r - k, pk = p - k;
-      if (r >= k) {
-        a[s2][0] = ndu[pk + 1][rk] != 0 ? a[s1][0] / ndu[pk + 1][rk] : 0;
-        d = a[s2][0] * ndu[rk][pk];
+  for (int j = 0; j <= p; ++j) out[j] = values[p][j];
+  for (int k = 1; k <= order; ++k) {
+    double* d = out + k * (p + 1);
+    if (k > p) {
+      for (int j = 0; j <= p; ++j) d[j] = 0;
+      continue;
+    }
+    for (int j = 0; j <= p - k; ++j) d[j] = values[p - k][j];
+    for (int q = p - k + 1; q <= p; ++q) {
+      const double* reciprocals = inverse + q * (q - 1) / 2;
+      double before = 0;
+      for (int r = 0; r < q; ++r) {
+        const double term = q * d[r] * reciprocals[r];
+        d[r] = before - term;
+        before = term;
       }
-      const int j1 = rk >= -1 ? 1 : -rk, j2 = r - 1 <= pk ? k - 1 : p - r;
-      for (int j = j1; j <= j2; ++j) {
-        a[s2][j] = ndu[pk + 1][rk + j] != 0 ? (a[s1][j] - a[s1][j - 1]) / ndu[pk + 1][rk + j] : 0;
-        d += a[s2][j] * ndu[rk + j][pk];
-      }
-      if (r <= pk) {
-        a[s2][k] = ndu[pk + 1][r] != 0 ? -a[s1][k - 1] / ndu[pk + 1][r] : 0;
-        d += a[s2][k] * ndu[r][pk];
-      }
-      out[k * (p + 1) + r] = d;
-      std::swap(s1, s2);
+      d[q] = before;
     }
   }
-  double factor = p;
-  for (int k = 1; k <= top; ++k) {
-    for (int j = 0; j <= p; ++j) out[k * (p + 1) + j] *= factor;
-    factor *= p - k;
+}
+
+}  // namespace
+
+void basis_derivatives(std::span<const double> knots, int degree, int span, double t, int order, double* out) {
+  switch (degree) {
+    case 1: return basis_of_degree<1>(knots.data(), degree, span, t, order, out);
+    case 2: return basis_of_degree<2>(knots.data(), degree, span, t, order, out);
+    case 3: return basis_of_degree<3>(knots.data(), degree, span, t, order, out);
+    case 5: return basis_of_degree<5>(knots.data(), degree, span, t, order, out);
+    default: return basis_of_degree<0>(knots.data(), degree, span, t, order, out);
   }
 }
 
