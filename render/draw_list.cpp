@@ -1,0 +1,214 @@
+#include "draw_list.h"
+
+#include <bit>
+#include <limits>
+
+namespace dupin {
+namespace {
+
+/// With a perspective camera among the model's parts, what is nearer to the eye than this part of the
+/// farthest depth is not drawn.
+constexpr double kNearestOfFar = 1e-6;
+
+struct Plane3 {
+  Vec3 n;
+  double d;
+};
+
+/// The picture's four sides as planes in model space, inside positive, normals unit.
+std::array<Plane3, 4> side_planes(const ViewRays& view) {
+  std::array<Plane3, 4> planes;
+  for (int i = 0; i < 4; ++i) {
+    const double sign = i & 1 ? 1 : -1;
+    const Vec3 axis = i < 2 ? view.right : view.up;
+    const double s = i < 2 ? view.sx : view.sy, o = i < 2 ? view.ox : view.oy;
+    // Inside is |(axis·p − o·w)/s| <= w with w the depth or, in parallel, 1.
+    Vec3 n = axis * (sign / s);
+    double d = 0;
+    if (view.perspective) {
+      n += view.forward * (1 - sign * o / s);
+    } else {
+      d = 1 - sign * o / s;
+    }
+    const double l = length(n);
+    planes[static_cast<std::size_t>(i)] = {n / l, d / l - dot(n / l, view.eye)};
+  }
+  return planes;
+}
+
+void depth_range(const Scene::Impl& scene, const ViewRays& view, DrawList& list) {
+  double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+  for (int i = 0; i < 8 && !scene.box.empty(); ++i) {
+    const double z = view.depth(scene.box.corner(i));
+    lo = std::min(lo, z);
+    hi = std::max(hi, z);
+  }
+  if (!(lo <= hi)) lo = hi = 1;
+  // Rounding must not bring a face that lies on the box in front of the nearest depth.
+  const double slack = 1e-6 * (hi - lo) + 1e-12 * std::abs(hi);
+  lo -= slack;
+  hi += slack;
+  list.far_depth = hi;
+  if (!view.perspective) {
+    list.near_depth = lo;
+    list.start_depth = lo;
+    return;
+  }
+  list.far_depth = std::max(hi, std::numeric_limits<double>::min());
+  list.near_depth = std::max(lo, kNearestOfFar * list.far_depth);
+  list.start_depth = std::max(lo, 0.0);
+}
+
+std::array<float, 4> texel(const Vec3& v, float w = 0) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), w};
+}
+Vec3 rounded(const Vec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+InstanceTexels instance_texels(const SceneInstance& instance, const ScenePart& part, const ViewRays& view,
+                               double start_depth) {
+  const Mat3& in = instance.to_part.linear;
+  const Mat3& out = instance.to_world.linear;
+  // A ray is S + ka (X P + Y Q) + t (F + kp (X P + Y Q)), t its depth beyond start_depth.
+  Vec3 start = view.eye + view.forward * start_depth;
+  const double at_start = view.perspective ? start_depth : 1;
+  start += (view.right * view.ox + view.up * view.oy) * at_start;
+  Vec3 forward = view.forward;
+  if (view.perspective) forward += view.right * view.ox + view.up * view.oy;
+  const Vec3 s = transform_point(instance.to_part, start) - part.anchor, high = rounded(s);
+  // clip X = row_x·(p − S), and likewise Y; the depth is start_depth + row_f·(p − S).
+  const Vec3 offset = view.perspective ? view.forward : Vec3{};
+  const Vec3 row_x = (view.right - offset * view.ox) / view.sx,
+             row_y = (view.up - offset * view.oy) / view.sy;
+  const auto word = [](std::uint32_t v) { return std::bit_cast<float>(v); };
+  InstanceTexels t{};
+  t[0] = texel(high, word(instance.first_face));
+  t[1] = texel(s - high, static_cast<float>(instance.scale_ratio));
+  t[2] = texel(in * forward);
+  t[3] = texel(in * (view.right * view.sx));
+  t[4] = texel(in * (view.up * view.sy));
+  t[5] = texel(transpose_times(out, row_x));
+  t[6] = texel(transpose_times(out, row_y));
+  t[7] = texel(transpose_times(out, view.forward));
+  return t;
+}
+
+/// A placement's camera for culling, in the part's space relative to the anchor.
+struct PartCamera {
+  std::array<Plane3, 4> sides;
+  Plane3 depth;  ///< its value is the depth
+  Vec3 eye;      ///< or, in parallel, the direction towards the viewer
+  bool perspective;
+  bool cull_turned_away;
+};
+
+Plane3 to_part(const Plane3& plane, const SceneInstance& instance, const Vec3& anchor, bool normalise) {
+  // n·(L p + t) + d
+  Plane3 result{transpose_times(instance.to_world.linear, plane.n),
+                dot(plane.n, instance.to_world.translation) + plane.d};
+  result.d += dot(result.n, anchor);
+  const double l = normalise ? length(result.n) : 1;
+  return {result.n / l, result.d / l};
+}
+
+PartCamera part_camera(const SceneInstance& instance, const ScenePart& part, const ViewRays& view,
+                       const std::array<Plane3, 4>& sides) {
+  PartCamera camera;
+  for (std::size_t i = 0; i < 4; ++i) camera.sides[i] = to_part(sides[i], instance, part.anchor, true);
+  camera.depth = to_part({view.forward, -dot(view.forward, view.eye)}, instance, part.anchor, false);
+  camera.perspective = view.perspective;
+  const Vec3 eye = transform_point(instance.to_part, view.eye);
+  camera.eye = view.perspective ? eye - part.anchor : -(instance.to_part.linear * view.forward);
+  // From inside a solid, or cut open by the nearest depth, its inner sides can be seen.
+  bool outside = true;
+  if (view.perspective) {
+    outside = !part.box.contains(eye);
+  } else {
+    for (int i = 0; i < 8; ++i)
+      outside = outside && view.depth(transform_point(instance.to_world, part.box.corner(i))) > 0;
+    outside = outside || true;  // a parallel camera sees what is behind its eye too
+  }
+  camera.cull_turned_away = part.closed && outside;
+  return camera;
+}
+
+bool turned_away(const DpBounds& dp, const PartCamera& camera) {
+  const Vec3 towards = camera.perspective ? camera.eye - dp.center : camera.eye;
+  if (dp.planar) return dot(dp.axis, towards) < 0;
+  if (dp.sin_cone >= 1) return false;
+  const double l = length(towards);
+  const double sin_sphere = camera.perspective ? dp.radius / l : 0;
+  if (!(sin_sphere < 1)) return false;
+  // Turned away if the axis and the direction to the viewer are more than 90° + cone + sphere apart.
+  const double cos_cone = std::sqrt(std::max(0.0, 1 - dp.sin_cone * dp.sin_cone)),
+               cos_sphere = std::sqrt(1 - sin_sphere * sin_sphere);
+  const double cos_sum = cos_cone * cos_sphere - dp.sin_cone * sin_sphere;
+  const double sin_sum = dp.sin_cone * cos_sphere + cos_cone * sin_sphere;
+  return cos_sum > 0 && dot(dp.axis, towards) < -sin_sum * l;
+}
+
+bool out_of_view(const DpBounds& dp, const PartCamera& camera) {
+  for (const Plane3& side : camera.sides)
+    if (dot(side.n, dp.center) + side.d < -dp.radius) return true;
+  return camera.perspective &&
+         dot(camera.depth.n, dp.center) + camera.depth.d < -dp.radius * length(camera.depth.n);
+}
+
+struct Candidate {
+  float depth;
+  DrawItem item;
+};
+
+int kind(const DpBounds& dp) {
+  return dp.planar ? dp.pieces ? kPlanarPieces : kPlanarWhole : dp.pieces ? kCurvedPieces : kCurvedWhole;
+}
+
+void add_dps(const SceneInstance& instance, std::uint32_t index, const ScenePart& part,
+             const PartCamera& camera, std::array<std::vector<Candidate>, kDpKinds>& candidates) {
+  for (std::size_t i = 0; i < part.dps.size(); ++i) {
+    const DpBounds& dp = part.dps[i];
+    if (out_of_view(dp, camera) || (camera.cull_turned_away && turned_away(dp, camera))) continue;
+    const double depth = dot(camera.depth.n, dp.center) + camera.depth.d;
+    const std::uint32_t color =
+        instance.face_colors.empty() ? instance.color : instance.face_colors[dp.color_face];
+    candidates[static_cast<std::size_t>(kind(dp))].push_back(
+        {static_cast<float>(depth),
+         {dp.record, index, instance.first_primitive + static_cast<std::uint32_t>(i) + 1, color}});
+  }
+}
+
+}  // namespace
+
+std::uint32_t DrawList::primitives() const {
+  auto n = static_cast<std::uint32_t>(items.size());
+  for (const TriangleRun& run : runs) n += run.triangles;
+  return n;
+}
+
+void build_draw_list(const Scene::Impl& scene, const ViewRays& view, DrawList& list) {
+  list.instances.clear();
+  list.items.clear();
+  list.runs.clear();
+  depth_range(scene, view, list);
+  const std::array<Plane3, 4> sides = side_planes(view);
+  std::array<std::vector<Candidate>, kDpKinds> candidates;
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const SceneInstance& instance = scene.instances[i];
+    const ScenePart& part = scene.parts[instance.part];
+    const auto index = static_cast<std::uint32_t>(i);
+    list.instances.push_back(instance_texels(instance, part, view, list.start_depth));
+    if (part.triangles)
+      list.runs.push_back({index, part.first_triangle, part.triangles, instance.first_primitive});
+    if (!part.dps.empty())
+      add_dps(instance, index, part, part_camera(instance, part, view, sides), candidates);
+  }
+  for (std::size_t k = 0; k < kDpKinds; ++k) {
+    std::stable_sort(candidates[k].begin(), candidates[k].end(),
+                     [](const Candidate& a, const Candidate& b) { return a.depth < b.depth; });
+    list.count[k] = static_cast<std::uint32_t>(candidates[k].size());
+    for (const Candidate& c : candidates[k]) list.items.push_back(c.item);
+  }
+}
+
+}  // namespace dupin

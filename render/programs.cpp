@@ -1,0 +1,56 @@
+// Building programs on first use, and the uniforms that all of them share.
+#include "renderer_impl.h"
+
+namespace dupin {
+
+Result<GLuint> Renderer::Impl::program(const std::string& key, const ProgramText& text) {
+  const auto found = programs_.find(key);
+  if (found != programs_.end()) {
+    gl->UseProgram(found->second.name());
+    return found->second.name();
+  }
+  ProgramText full = text;
+  full.units = {{"heap", kHeapUnit}, {"instances", kInstancesUnit},         {"slots", kSlotsUnit},
+                {"ids", kIdsUnit},   {"vertices", kVerticesUnit},           {"indices", kIndicesUnit},
+                {"runs", kRunsUnit}, {"triangle_faces", kTriangleFacesUnit}};
+  for (const auto& unit : text.units) full.units.push_back(unit);
+  auto built = build_program(*gl, full);
+  if (!built) return built.status();
+  const GLuint name = built->name();
+  programs_.emplace(key, std::move(*built));
+  return name;
+}
+
+void Renderer::Impl::set_view(GLuint name, const ViewRays& view) const {
+  const auto location = [&](const char* uniform) { return gl->GetUniformLocation(name, uniform); };
+  const auto set = [&](const char* uniform, double value) {
+    gl->Uniform1f(location(uniform), static_cast<float>(value));
+  };
+  set("start", view.perspective ? list_.start_depth : 1);
+  set("spread", view.perspective ? 1 : 0);
+  set("start_depth", list_.start_depth);
+  set("near_depth", list_.near_depth);
+  set("zero_to_one", gl->ClipControl ? 1 : 0);
+  gl->Uniform2f(location("picture"), static_cast<float>(view.width), static_cast<float>(view.height));
+  gl->Uniform2f(location("pixel"), static_cast<float>(2.0 / view.width),
+                static_cast<float>(2.0 / view.height));
+  // The nearest depth is 1 in the buffer and the farthest 0: floats are densest there, where perspective
+  // squeezes depths together.
+  if (view.perspective) {
+    gl->Uniform3f(location("depth_terms"), 0, 0, static_cast<float>(list_.near_depth));
+  } else {
+    const double range = std::max(list_.far_depth - list_.near_depth, 1e-300);
+    gl->Uniform3f(location("depth_terms"), static_cast<float>(list_.far_depth / range),
+                  static_cast<float>(-1 / range), 0);
+  }
+  gl->Uniform2f(location("axis_scale"), static_cast<float>(1 / view.sx), static_cast<float>(1 / view.sy));
+  gl->Uniform2f(location("axis_offset"), static_cast<float>(view.ox), static_cast<float>(view.oy));
+  const Vec3 back = -view.forward;
+  const float axes[9] = {
+      static_cast<float>(view.right.x), static_cast<float>(view.right.y), static_cast<float>(view.right.z),
+      static_cast<float>(view.up.x),    static_cast<float>(view.up.y),    static_cast<float>(view.up.z),
+      static_cast<float>(back.x),       static_cast<float>(back.y),       static_cast<float>(back.z)};
+  gl->UniformMatrix3fv(location("to_model"), 1, GL_FALSE, axes);
+}
+
+}  // namespace dupin

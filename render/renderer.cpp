@@ -1,0 +1,165 @@
+#include "renderer.h"
+
+#include <chrono>
+
+#include "../core/parallel.h"
+#include "gl_state.h"
+#include "renderer_impl.h"
+
+namespace dupin {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// Where in a pixel its samples lie: four on a turned grid; otherwise the additive sequence of the plastic
+/// number, which is even in the plane.
+Vec2 sample_offset(int index, int count) {
+  if (count == 1) return {};
+  if (count == 4) {
+    constexpr Vec2 kTurned[] = {{-0.125, -0.375}, {0.375, -0.125}, {0.125, 0.375}, {-0.375, 0.125}};
+    return kTurned[index];
+  }
+  constexpr double kPlastic = 1.32471795724474602596;
+  const double u = std::fmod((index + 1) / kPlastic, 1),
+               v = std::fmod((index + 1) / (kPlastic * kPlastic), 1);
+  return {u - 0.5, v - 0.5};
+}
+
+std::string text_of(const Gl& gl, GLenum what) {
+  const auto* text = reinterpret_cast<const char*>(gl.GetString(what));
+  return text ? text : "";
+}
+
+Status check(const DrawOptions& options) {
+  if (options.samples < 1 || options.samples > 256)
+    return {StatusCode::invalid_argument, "a pixel can have 1 to 256 samples"};
+  return {};
+}
+
+}  // namespace
+
+Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Renderer::~Renderer() = default;
+std::string Renderer::gl_renderer() const {
+  return impl_->gl_renderer;
+}
+std::string Renderer::gl_version() const {
+  return impl_->gl_version;
+}
+
+Status Renderer::Impl::init(const GetProcAddress& get_proc_address) {
+  auto loaded = load_gl(get_proc_address);
+  if (!loaded) return loaded.status();
+  gl = std::make_shared<const Gl>(*loaded);
+  const GlStateGuard guard(*gl);
+  gl_renderer = text_of(*gl, GL_RENDERER);
+  gl_version = text_of(*gl, GL_VERSION);
+  gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &max_texels);
+  gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &max_picture);
+  instances_ = TexelBuffer(*gl, GL_RGBA32F);
+  slots_ = TexelBuffer(*gl, GL_RGBA32UI);
+  runs_ = TexelBuffer(*gl, GL_RGBA32UI);
+  for (GlBuffer* buffer : {&items_, &quads_, &prisms_}) *buffer = GlBuffer(*gl);
+  for (GlVertexArray* array : {&item_array_, &quad_array_, &prism_array_, &empty_array_})
+    *array = GlVertexArray(*gl);
+  visibility_framebuffer_ = GlFramebuffer(*gl);
+  shading_framebuffer_ = GlFramebuffer(*gl);
+  gl->BindVertexArray(item_array_.name());
+  gl->BindBuffer(GL_ARRAY_BUFFER, items_.name());
+  gl->EnableVertexAttribArray(0);
+  gl->VertexAttribIPointer(0, 4, GL_UNSIGNED_INT, sizeof(DrawItem), nullptr);
+  return {};
+}
+
+Result<std::unique_ptr<Renderer>> Renderer::create(const GetProcAddress& get_proc_address) {
+  auto impl = std::make_unique<Impl>();
+  const Status status = impl->init(get_proc_address);
+  if (!status.ok()) return status;
+  return std::unique_ptr<Renderer>(new Renderer(std::move(impl)));
+}
+
+Result<std::unique_ptr<Scene>> Renderer::upload(const Model& model, const DpScene* dps) {
+  auto scene = std::make_unique<Scene::Impl>();
+  ScenePackage package;
+  const Status status = pack_scene(model, dps, *scene, package);
+  if (!status.ok()) return status;
+  const Gl& gl = *impl_->gl;
+  const GlStateGuard guard(gl);
+  scene->gl = impl_->gl;
+  if (std::max({package.heap.size(), package.vertices.size() / 2, package.indices.size()}) >
+      static_cast<std::size_t>(impl_->max_texels))
+    return {StatusCode::limit, "the model is larger than this OpenGL context's texture buffers can hold"};
+  const auto fill = [&](TexelBuffer& buffer, GLenum format, const auto& content) {
+    buffer = TexelBuffer(gl, format);
+    buffer.assign(content.data(), content.size() * sizeof(content[0]), GL_STATIC_DRAW);
+  };
+  fill(scene->heap, GL_RGBA32UI, package.heap);
+  if (!package.indices.empty()) {
+    fill(scene->vertices, GL_RG32F, package.vertices);
+    fill(scene->indices, GL_R32UI, package.indices);
+    fill(scene->triangle_faces, GL_R32UI, package.triangle_faces);
+    fill(scene->colors, GL_R32UI, package.colors);
+    scene->mesh_array = GlVertexArray(gl);
+    gl.BindVertexArray(scene->mesh_array.name());
+    gl.BindBuffer(GL_ARRAY_BUFFER, scene->vertices.buffer());
+    gl.EnableVertexAttribArray(0);
+    gl.VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 24, nullptr);
+    gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, scene->indices.buffer());
+  }
+  gl.Finish();
+  return std::make_unique<Scene>(std::move(scene));
+}
+
+/// Every sample's passes, the color picture holding their sum.
+Status Renderer::Impl::draw_samples(const Scene::Impl& scene, const ViewRays& view,
+                                    const DrawOptions& options) {
+  const unsigned all = pictures_for(options.outputs), color = all & 1U << kColorPicture;
+  const bool together = options.samples == 1 || !color;
+  Status status = prepare_targets(view.width, view.height, all);
+  if (status.ok() && !together) {
+    for (int i = 0; i < options.samples && status.ok(); ++i) {
+      const Vec2 offset = sample_offset(i, options.samples);
+      status = run({&scene, jittered(view, offset.x, offset.y), &options, color, i > 0});
+    }
+  }
+  // The other pictures, and the numbers of what is seen, are the pixel centres'.
+  if (status.ok() && (together || all != color))
+    status = run({&scene, view, &options, together ? all : all & ~color, false});
+  return status;
+}
+
+Result<FrameStats> Renderer::draw_only(Scene& scene, const Camera& camera, const DrawOptions& options) {
+  const Status valid = check(options);
+  if (!valid.ok()) return valid;
+  const GlStateGuard guard(*impl_->gl);
+  const auto start = Clock::now();
+  const Status status = impl_->draw_samples(scene.impl(), view_rays(camera), options);
+  if (!status.ok()) return status;
+  impl_->gl->Finish();
+  FrameStats stats;
+  stats.milliseconds = milliseconds_since(start);
+  stats.primitives = impl_->draw_list().primitives();
+  return stats;
+}
+
+Result<Frame> Renderer::draw(Scene& scene, const Camera& camera, const DrawOptions& options) {
+  const Status valid = check(options);
+  if (!valid.ok()) return valid;
+  const GlStateGuard guard(*impl_->gl);
+  const auto start = Clock::now();
+  const ViewRays view = view_rays(camera);
+  const Status status = impl_->draw_samples(scene.impl(), view, options);
+  if (!status.ok()) return status;
+  impl_->gl->Finish();
+  Frame frame;
+  frame.stats.milliseconds = milliseconds_since(start);
+  frame.stats.primitives = impl_->draw_list().primitives();
+  impl_->read_frame(view, options, frame);
+  return frame;
+}
+
+}  // namespace dupin

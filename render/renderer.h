@@ -1,0 +1,154 @@
+// Drawing models into pictures, in any current OpenGL 3.3 core context.
+//
+//   auto context = create_context(Device::automatic);           // or the host's own
+//   auto renderer = Renderer::create((*context)->loader());
+//   auto scene = (*renderer)->upload(model, &dps);
+//   auto frame = (*renderer)->draw(**scene, camera, options);
+//
+// A Renderer and its Scenes belong to one context, which must be current whenever they are used or destroyed.
+// Every call leaves the context's state as it found it. Nothing here is global: any number of contexts,
+// renderers and threads (one a context) can coexist.
+#ifndef DUPIN_RENDER_RENDERER_H
+#define DUPIN_RENDER_RENDERER_H
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "../core/camera.h"
+#include "../core/status.h"
+#include "../nurbs/model.h"
+#include "../sampling/quadric_dp.h"
+#include "context.h"
+
+namespace dupin {
+
+/// What the colours of a picture show.
+enum class Shading {
+  lit,     ///< the file's colours under a head, a key and a fill light; both sides of a surface alike
+  normal,  ///< ½ + ½ n, in model space
+  k1,
+  k2,
+  mean,
+  gaussian,   ///< curvatures, blue below and red above zero
+  zebra,      ///< reflected stripes: shows breaks of tangent and of curvature
+  face,       ///< a colour a face
+  primitive,  ///< a colour a primitive
+};
+inline constexpr std::string_view kShadingNames[] = {"lit",      "normal", "k1",   "k2",       "mean",
+                                                     "gaussian", "zebra",  "face", "primitive"};
+
+/// Pictures of numbers that a frame can hold besides its colours; bits of DrawOptions::outputs.
+enum Output : unsigned {
+  kColor = 1,
+  kNormal = 2,       ///< unit, model space, outward
+  kDepth = 4,        ///< along the view axis, in model units; +inf where nothing is drawn
+  kPosition = 8,     ///< model space
+  kCurvature = 16,   ///< k1, k2: |k1| >= |k2|, positive towards the outward normal
+  kDirection = 32,   ///< of k1, unit, model space
+  kFace = 64,        ///< 1-based, over the drawn face instances in the model's order; 0: background
+  kPrimitive = 128,  ///< 1-based
+  kUv = 256,         ///< the surface's parameters
+};
+
+struct DrawOptions {
+  unsigned outputs = kColor;
+  Shading shading = Shading::lit;
+  bool edges = true;  ///< draw feature edges
+  double edge_width_px = 1.2;
+  std::optional<Color> background = Color{1, 1, 1, 1};  ///< linear; none: transparent
+  std::optional<Color> color;                           ///< instead of the file's colours
+  int samples = 1;  ///< a pixel, for its colour; 1 … 256. The other outputs are those of the pixel's centre.
+  double curvature_scale = 0;  ///< |curvature| that gets the full colour; 0: chosen from the scene's size
+};
+
+/// What one frame took.
+struct FrameStats {
+  std::uint32_t primitives = 0;  ///< drawn after culling (DP instances, or triangles)
+  std::uint64_t covered_pixels = 0;
+  double milliseconds = 0;  ///< culling and drawing, until the GPU is done; not reading back
+};
+
+/// Row 0 is the top. Only what was asked for is there; vectors have 1, 2, 3 or 4 numbers a pixel, pixel after
+/// pixel.
+struct Frame {
+  int width = 0, height = 0;
+  std::vector<float> color;      ///< R G B A, linear, premultiplied by A
+  std::vector<float> normal;     ///< 3
+  std::vector<float> depth;      ///< 1
+  std::vector<float> position;   ///< 3
+  std::vector<float> curvature;  ///< 2
+  std::vector<float> direction;  ///< 3
+  std::vector<std::uint32_t> face, primitive;
+  std::vector<float> uv;  ///< 2
+  FrameStats stats;
+};
+
+/// What a scene is made of.
+struct SceneInfo {
+  std::size_t primitives = 0;         ///< stored: DPs, or triangles; a part that is placed twice counts once
+  std::size_t placed_primitives = 0;  ///< counting every placement
+  std::size_t bytes = 0;              ///< uploaded for geometry
+  std::size_t clips = 0;              ///< planes, lines, arcs and ellipses that bound the stored DPs
+  std::size_t drawn_faces = 0;        ///< face instances with anything to draw
+};
+
+/// A model on the GPU. Destroy it with its context current.
+class Scene {
+ public:
+  class Impl;
+  explicit Scene(std::unique_ptr<Impl> impl);
+  ~Scene();
+  const SceneInfo& info() const;
+  /// Of everything placed, in model space.
+  const Box3& box() const;
+  Impl& impl() { return *impl_; }
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+/// How a host draws: its camera, and the part of its framebuffer that it draws into. The host's current draw
+/// framebuffer, depth function, depth range and clip-control convention are used as they are.
+struct HostView {
+  std::array<double, 16> view, projection;  ///< column-major, as OpenGL's
+  std::array<int, 4> viewport;              ///< x, y, width, height
+};
+
+class Renderer {
+ public:
+  /// Compiles what every frame needs in the current context; no_device where that is older than OpenGL 3.3
+  /// core.
+  static Result<std::unique_ptr<Renderer>> create(const GetProcAddress& get_proc_address);
+  ~Renderer();
+
+  /// The DPs of `dps`, one entry a part of the model; parts without faces, and every part if `dps` is null,
+  /// by their meshes.
+  Result<std::unique_ptr<Scene>> upload(const Model& model, const DpScene* dps);
+
+  /// Draws into framebuffers of its own and reads back what was asked for.
+  Result<Frame> draw(Scene& scene, const Camera& camera, const DrawOptions& options);
+
+  /// Draws without reading anything back; for timing. The picture is gone with the next call.
+  Result<FrameStats> draw_only(Scene& scene, const Camera& camera, const DrawOptions& options);
+
+  /// Draws into the framebuffer that is bound for drawing, against and into its depth buffer.
+  Status draw_into_host(Scene& scene, const HostView& host, const DrawOptions& options);
+
+  /// GL_RENDERER and GL_VERSION of the context.
+  std::string gl_renderer() const;
+  std::string gl_version() const;
+
+ private:
+  class Impl;
+  explicit Renderer(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace dupin
+
+#endif

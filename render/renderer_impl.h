@@ -1,0 +1,103 @@
+// The renderer's programs, buffers and pictures, and the passes of a frame.
+#ifndef DUPIN_RENDER_RENDERER_IMPL_H
+#define DUPIN_RENDER_RENDERER_IMPL_H
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "draw_list.h"
+#include "gl_objects.h"
+#include "renderer.h"
+#include "scene.h"
+#include "view_rays.h"
+
+namespace dupin {
+
+/// Texture units; every program that has a sampler of one of these names reads it there.
+enum Unit {
+  kHeapUnit,
+  kInstancesUnit,
+  kSlotsUnit,
+  kIdsUnit,
+  kVerticesUnit,
+  kIndicesUnit,
+  kTriangleFacesUnit,
+  kRunsUnit
+};
+
+/// What the shading pass writes, a picture each.
+enum Picture {
+  kColorPicture,
+  kNormalDepthPicture,
+  kCurvaturePicture,
+  kDirectionPicture,
+  kNumbersPicture,
+  kPictures
+};
+/// The pictures that the outputs asked for are read from, as bits 1 << Picture.
+unsigned pictures_for(unsigned outputs);
+
+class Renderer::Impl {
+ public:
+  std::shared_ptr<const Gl> gl;
+  std::string gl_renderer, gl_version;
+  GLint max_texels = 0, max_picture = 0;
+
+  Status init(const GetProcAddress& get_proc_address);
+
+  /// One picture's worth of work, at one sample a pixel: ids and depth, then the pictures of `pictures`.
+  struct Pass {
+    const Scene::Impl* scene = nullptr;
+    ViewRays view;
+    const DrawOptions* options = nullptr;
+    unsigned pictures = 0;
+    bool accumulate = false;  ///< add to the color picture instead of replacing it
+  };
+  /// Makes room for pictures of this size; ids and depth always.
+  Status prepare_targets(int width, int height, unsigned pictures);
+  Status run(const Pass& pass);
+  Status draw_samples(const Scene::Impl& scene, const ViewRays& view, const DrawOptions& options);
+  /// What the last draw_samples drew.
+  void read_frame(const ViewRays& view, const DrawOptions& options, Frame& frame);
+
+  const GlTexture& picture(Picture picture) const { return pictures_[picture]; }
+  GLuint shading_framebuffer() const { return shading_framebuffer_.name(); }
+  const GlTexture& ids() const { return ids_; }
+  const DrawList& draw_list() const { return list_; }
+  /// Reads a picture of the last pass, row 0 first.
+  void read(Picture picture, GLenum format, GLenum type, void* pixels);
+  void read_ids(std::uint32_t* pixels);
+
+  /// The program of that key, built by `text` the first time; left in use.
+  Result<GLuint> program(const std::string& key, const ProgramText& text);
+  /// Sets the uniforms that describe the camera, whichever of them the program in use has.
+  void set_view(GLuint program, const ViewRays& view) const;
+  const GlVertexArray& empty_array() const { return empty_array_; }
+
+ private:
+  void upload_list(const Scene::Impl& scene);
+  Status fill_slots();
+  Status draw_visibility(const Pass& pass);
+  Status draw_dps(const ViewRays& view);
+  Status draw_triangles(const Pass& pass);
+  Status shade(const Pass& pass);
+  Status shade_with(const Pass& pass, bool mesh, bool second);
+  void grow_indices(std::uint32_t dps);
+
+  std::map<std::string, GlProgram> programs_;
+  DrawList list_;
+  TexelBuffer instances_, slots_, runs_;
+  GlBuffer items_, quads_, prisms_;
+  GlVertexArray item_array_, quad_array_, prism_array_, empty_array_;
+  std::uint32_t indexed_dps_ = 0;
+  int width_ = 0, height_ = 0;
+  float view_spread_ = 1;
+  GlTexture ids_, depth_;
+  std::array<GlTexture, kPictures> pictures_;
+  GlFramebuffer visibility_framebuffer_, shading_framebuffer_;
+};
+
+}  // namespace dupin
+
+#endif

@@ -1,0 +1,194 @@
+#include "scene.h"
+
+#include <limits>
+
+namespace dupin {
+namespace {
+
+constexpr Color kDefaultColor{0.55F, 0.57F, 0.60F, 1};
+
+std::uint32_t srgb8(float linear) {
+  const float c = std::clamp(linear, 0.0F, 1.0F);
+  const float s = c <= 0.0031308F ? 12.92F * c : 1.055F * std::pow(c, 1 / 2.4F) - 0.055F;
+  return static_cast<std::uint32_t>(std::lround(s * 255));
+}
+std::uint32_t packed(const Color& c) {
+  return srgb8(c.r) | srgb8(c.g) << 8 | srgb8(c.b) << 16 | static_cast<std::uint32_t>(255) << 24;
+}
+
+std::array<Vec3, 8> corners(const QuadricDp& dp) {
+  std::array<Vec3, 8> result;
+  for (std::size_t i = 0; i < 8; ++i) {
+    const Vec2 p = dp.footprint[i % 4];
+    result[i] = {p.x, p.y, dp.planar ? 0.0 : i < 4 ? dp.z_lo : dp.z_hi};
+  }
+  return result;
+}
+
+/// ∇F is affine in the point, so over the prism it stays in the convex hull of its values at the corners: a
+/// convex cone that holds those holds them all.
+void bound_normals(const QuadricDp& dp, const std::array<Vec3, 8>& box, DpBounds& bounds) {
+  const double side = dp.flipped ? -1 : 1;
+  std::array<Vec3, 8> normals;
+  Vec3 sum;
+  for (std::size_t i = 0; i < 8; ++i) {
+    normals[i] = normalized(quadric_gradient(dp, box[i])) * side;
+    sum += normals[i];
+  }
+  const Vec3 axis = normalized(sum);
+  double smallest = 1;
+  for (const Vec3& n : normals) smallest = std::min(smallest, dot(n, axis));
+  bounds.axis = dp.u * axis.x + dp.v * axis.y + dp.n() * axis.z;
+  if (smallest > 0) bounds.sin_cone = std::sqrt(std::max(0.0, 1 - smallest * smallest)) + 1e-6;
+}
+
+std::size_t piece_count(const QuadricDp& dp) {
+  return std::size_t{dp.planes} + dp.lines + dp.arcs + dp.ellipses;
+}
+
+/// Numbers the faces that have something to draw, in the part's order; the others get none.
+std::vector<std::uint32_t> number_faces(std::size_t count, const std::vector<bool>& drawn,
+                                        std::uint32_t& total) {
+  std::vector<std::uint32_t> numbers(count, 0);
+  for (std::size_t i = 0; i < count; ++i)
+    if (drawn[i]) numbers[i] = total++;
+  return numbers;
+}
+
+Status pack_dps(const Part& source, const PartDps& dps, ScenePart& part, SceneInfo& info,
+                std::vector<bool>& drawn, ScenePackage& package) {
+  part.anchor = source.box.empty() ? dps.dps.front().origin : source.box.center();
+  for (const QuadricDp& dp : dps.dps) {
+    if (dp.face >= drawn.size())
+      return {StatusCode::invalid_argument, "a primitive names a face that its part lacks"};
+    drawn[dp.face] = true;
+  }
+  const std::vector<std::uint32_t> numbers = number_faces(source.faces.size(), drawn, part.drawn_faces);
+  for (const QuadricDp& dp : dps.dps) {
+    DpBounds bounds = dp_bounds(dp, part.anchor);
+    bounds.record = static_cast<std::uint32_t>(package.heap.size());
+    const Status status = encode_dp(dps, dp, part.anchor, numbers[dp.face], package.heap);
+    if (!status.ok()) return status;
+    info.clips += piece_count(dp);
+    for (const Vec3& c : corners(dp)) part.box.add(dp.origin + dp.u * c.x + dp.v * c.y + dp.n() * c.z);
+    part.dps.push_back(bounds);
+  }
+  info.primitives += dps.dps.size();
+  return {};
+}
+
+void pack_mesh(const Part& source, ScenePart& part, SceneInfo& info, std::vector<bool>& drawn,
+               ScenePackage& package) {
+  const TriangleMesh& mesh = source.mesh;
+  part.anchor = mesh.origin;
+  part.first_triangle = static_cast<std::uint32_t>(package.indices.size() / 3);
+  part.triangles = static_cast<std::uint32_t>(mesh.triangles.size() / 3);
+  const auto first_vertex = static_cast<std::uint32_t>(package.vertices.size() / 6);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const auto& p = mesh.positions[i];
+    const auto& n = mesh.normals[i];
+    package.vertices.insert(package.vertices.end(), {p[0], p[1], p[2], n[0], n[1], n[2]});
+    part.box.add(mesh.origin + Vec3{p[0], p[1], p[2]});
+  }
+  for (const std::uint32_t i : mesh.triangles) package.indices.push_back(first_vertex + i);
+  for (const std::uint32_t f : mesh.faces) drawn[f] = true;
+  const std::vector<std::uint32_t> numbers = number_faces(drawn.size(), drawn, part.drawn_faces);
+  for (const std::uint32_t f : mesh.faces) package.triangle_faces.push_back(numbers[f]);
+  info.primitives += part.triangles;
+}
+
+/// The columns' lengths bound how a placement stretches directions well enough for proxies.
+double scale_ratio(const Mat3& m) {
+  const double a = length(m.x), b = length(m.y), c = length(m.z);
+  return std::max({a, b, c}) / std::max(std::min({a, b, c}), 1e-300);
+}
+
+void place(const Model& model, const Instance& instance, const std::vector<std::vector<bool>>& drawn,
+           Scene::Impl& scene, ScenePackage& package) {
+  const Part& source = model.parts[instance.part];
+  const ScenePart& part = scene.parts[instance.part];
+  SceneInstance placed;
+  placed.part = instance.part;
+  placed.to_world = instance.to_world;
+  placed.to_part = inverse(instance.to_world);
+  placed.first_face = static_cast<std::uint32_t>(scene.faces.size());
+  placed.first_primitive = static_cast<std::uint32_t>(scene.info.placed_primitives);
+  placed.scale_ratio = scale_ratio(instance.to_world.linear);
+  const Color own = instance.color ? *instance.color : source.color ? *source.color : kDefaultColor;
+  placed.color = packed(own);
+  const bool own_colors = std::any_of(source.faces.begin(), source.faces.end(),
+                                      [](const Face& f) { return f.color.has_value(); });
+  if (own_colors)
+    for (const Face& face : source.faces)
+      placed.face_colors.push_back(face.color ? packed(*face.color) : placed.color);
+  const auto index = static_cast<std::uint32_t>(scene.instances.size());
+  const std::vector<bool>& faces = drawn[instance.part];
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    if (faces[f]) {
+      scene.faces.push_back({index, static_cast<std::uint32_t>(f)});
+      package.colors.push_back(placed.face_colors.empty() ? placed.color : placed.face_colors[f]);
+    }
+  scene.info.placed_primitives += part.dps.size() + part.triangles;
+  scene.box.add(transform_box(instance.to_world, part.box));
+  scene.instances.push_back(std::move(placed));
+}
+
+}  // namespace
+
+DpBounds dp_bounds(const QuadricDp& dp, const Vec3& anchor) {
+  const std::array<Vec3, 8> box = corners(dp);
+  DpBounds bounds;
+  bounds.planar = dp.planar;
+  bounds.pieces = piece_count(dp) > 0 || !dp.reference_inside;
+  bounds.color_face = dp.face;
+  Box3 local;
+  for (const Vec3& c : box) local.add(c);
+  const Vec3 center = local.center();
+  for (const Vec3& c : box) bounds.radius = std::max(bounds.radius, length(c - center));
+  bounds.center = dp.origin + dp.u * center.x + dp.v * center.y + dp.n() * center.z - anchor;
+  if (dp.planar) {
+    bounds.axis = dp.flipped ? -dp.n() : dp.n();
+    bounds.sin_cone = 0;
+  } else {
+    bound_normals(dp, box, bounds);
+  }
+  return bounds;
+}
+
+Status pack_scene(const Model& model, const DpScene* dps, Scene::Impl& scene, ScenePackage& package) {
+  if (dps && dps->parts.size() != model.parts.size())
+    return {StatusCode::invalid_argument,
+            "the primitives are not those of this model: the numbers of parts differ"};
+  std::vector<std::vector<bool>> drawn(model.parts.size());
+  for (std::size_t i = 0; i < model.parts.size(); ++i) {
+    const Part& source = model.parts[i];
+    ScenePart part;
+    part.closed = source.closed;
+    const bool by_mesh = !dps || source.faces.empty();
+    // A mesh part without faces is one face.
+    drawn[i].assign(source.faces.empty() && !source.mesh.triangles.empty() ? 1 : source.faces.size(), false);
+    if (!by_mesh && !dps->parts[i].dps.empty()) {
+      const Status status = pack_dps(source, dps->parts[i], part, scene.info, drawn[i], package);
+      if (!status.ok()) return status;
+    } else if (by_mesh && !source.mesh.triangles.empty()) {
+      pack_mesh(source, part, scene.info, drawn[i], package);
+    }
+    scene.parts.push_back(std::move(part));
+  }
+  for (const Instance& instance : model.instances) place(model, instance, drawn, scene, package);
+  scene.info.drawn_faces = scene.faces.size();
+  scene.info.bytes = package.heap.size() * sizeof(Texel) + package.vertices.size() * 4 +
+                     package.indices.size() * 4 + package.triangle_faces.size() * 4;
+  return {};
+}
+
+Scene::Scene(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Scene::~Scene() = default;
+const SceneInfo& Scene::info() const {
+  return impl_->info;
+}
+const Box3& Scene::box() const {
+  return impl_->box;
+}
+
+}  // namespace dupin

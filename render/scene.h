@@ -1,0 +1,76 @@
+// A model as the GPU holds it: geometry once a part, and what culling needs to know on the CPU.
+#ifndef DUPIN_RENDER_SCENE_H
+#define DUPIN_RENDER_SCENE_H
+
+#include <cstdint>
+#include <vector>
+
+#include "gl_objects.h"
+#include "gpu_encode.h"
+#include "renderer.h"
+
+namespace dupin {
+
+/// What decides whether a DP is worth drawing, in the part's space relative to the anchor.
+struct DpBounds {
+  Vec3 center;
+  double radius = 0;
+  Vec3 axis;            ///< of the cone that holds every outward normal
+  double sin_cone = 2;  ///< of its half-angle, which is less than a right angle; > 1: there is no such cone
+  std::uint32_t record = 0;
+  std::uint32_t color_face = 0;  ///< index of its face in the part
+  bool planar = false, pieces = false, whole = false;
+};
+DpBounds dp_bounds(const QuadricDp& dp, const Vec3& anchor);
+
+struct ScenePart {
+  Vec3 anchor;
+  Box3 box;  ///< of what is drawn, in the part's space
+  bool closed = false;
+  std::vector<DpBounds> dps;
+  std::uint32_t drawn_faces = 0;
+  std::uint32_t first_triangle = 0, triangles = 0;
+};
+
+struct SceneInstance {
+  std::uint32_t part = 0;
+  Affine3 to_world, to_part;
+  std::uint32_t first_face = 0;       ///< drawn face instances before it
+  std::uint32_t first_primitive = 0;  ///< primitives before it
+  std::uint32_t color = 0;            ///< of faces that have none of their own (sRGB, 8 bits each, r lowest)
+  std::vector<std::uint32_t> face_colors;  ///< per face of the part; empty: all `color`
+  double scale_ratio = 1;                  ///< largest over smallest scale
+};
+
+/// Which face of which instance a number of the face AOV is; index 0 is number 1.
+struct FaceName {
+  std::uint32_t instance = 0, face = 0;
+};
+
+class Scene::Impl {
+ public:
+  std::shared_ptr<const Gl> gl;  ///< outlives the buffers below
+  std::vector<ScenePart> parts;
+  std::vector<SceneInstance> instances;
+  std::vector<FaceName> faces;
+  Box3 box;
+  SceneInfo info;
+  TexelBuffer heap;            ///< the DPs' records (RGBA32UI)
+  TexelBuffer vertices;        ///< 6 floats each, as RG32F
+  TexelBuffer indices;         ///< R32UI, also the element array
+  TexelBuffer triangle_faces;  ///< R32UI: the drawn face's number in its part
+  TexelBuffer colors;          ///< R32UI: of every drawn face instance; for triangles
+  GlVertexArray mesh_array;
+};
+
+/// What does not need a context: everything of the Impl but its buffers, with the bytes to put into them.
+struct ScenePackage {
+  std::vector<Texel> heap;
+  std::vector<float> vertices;
+  std::vector<std::uint32_t> indices, triangle_faces, colors;
+};
+Status pack_scene(const Model& model, const DpScene* dps, Scene::Impl& scene, ScenePackage& package);
+
+}  // namespace dupin
+
+#endif

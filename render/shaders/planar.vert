@@ -1,0 +1,65 @@
+// A planar DP: its footprint itself is drawn. What is covered follows from the footprint's sides as linear functions of (X, Y):
+// with (x, y, 1)·W linear in the picture's coordinates, so is n·(x, y)·W + d·W.
+uniform int first_slot;
+flat out vec3 side0, side1, side2, side3;
+flat out uint id;
+#ifdef PIECES
+flat out vec3 row_x, row_y, row_w;
+flat out ivec2 pieces;  // texel, slot's meta
+flat out float rounding;
+#endif
+
+vec3 side_function(vec2 a, vec2 b, mat3 rows, float rounding) {
+  vec2 d = b - a;
+  float l = length(d);
+  if (l == 0.0) return vec3(0.0, 0.0, 1.0);
+  vec2 inward = vec2(-d.y, d.x) / l;
+  return rows * vec3(inward, rounding - dot(inward, a));
+}
+
+void main() {
+  int slot = first_slot + (gl_VertexID >> 2), i = gl_VertexID & 3;
+  uvec4 t0 = texelFetch(slots, slot * kSlotTexels), t1 = texelFetch(slots, slot * kSlotTexels + 1);
+  vec3 s = uintBitsToFloat(t0.xyz), f = uintBitsToFloat(t1.xyz), p = slot_texel(slot, 2).xyz;
+  vec4 t3 = slot_texel(slot, 3);
+  vec3 q = t3.xyz, a = start * p, b = start * q;
+  vec4 c01 = slot_texel(slot, 6), c23 = slot_texel(slot, 7);
+
+  // The ray meets z = 0 in (o.xy d.z − d.xy o.z) / d.z; the product of what is linear in X, Y in o and d cancels, as they are
+  // parallel or one of them is zero. W = ∓d.z has the sign that is positive where the ray comes from the viewer's side.
+  vec3 fs = spread * p, gs = spread * q;
+  vec2 h0 = s.xy * f.z - f.xy * s.z;
+  vec2 hx = s.xy * fs.z - fs.xy * s.z + a.xy * f.z - f.xy * a.z;
+  vec2 hy = s.xy * gs.z - gs.xy * s.z + b.xy * f.z - f.xy * b.z;
+  float eye_z = spread > 0.0 ? s.z - start_depth * f.z : -f.z;
+  float sign_w = eye_z < 0.0 ? 1.0 : -1.0;
+  mat3 rows = sign_w * mat3(hx.x, hy.x, h0.x, hx.y, hy.y, h0.y, fs.z, gs.z, f.z);  // columns: xW, yW, W over (X, Y, 1)
+
+  float widen = t3.w;
+  side0 = side_function(c01.xy, c01.zw, rows, widen);
+  side1 = side_function(c01.zw, c23.xy, rows, widen);
+  side2 = side_function(c23.xy, c23.zw, rows, widen);
+  side3 = side_function(c23.zw, c01.xy, rows, widen);
+  id = uint(slot) + 1u;
+#ifdef PIECES
+  row_x = rows[0];
+  row_y = rows[1];
+  row_w = rows[2];
+  pieces = ivec2(t1.w, t0.w);
+  rounding = widen;
+#endif
+
+  // Move the corner so far that both its sides move kGrow pixels on the screen: a side moved by m moves m |J| / |J side|.
+  vec4 rx = slot_texel(slot, 8), ry = slot_texel(slot, 9), rf = slot_texel(slot, 10);
+  vec2 c = corner_of(c01, c23, i), to = side_to(c01, c23, i), from = side_from(c01, c23, i);
+  vec3 at = vec3(c, 1.0);
+  vec2 clip = vec2(dot(rx.xyw, at), dot(ry.xyw, at));
+  float w = spread > 0.0 ? dot(rf.xyw, at) : 1.0, w2 = max(w * w, 1e-30);
+  vec2 ju = (vec2(rx.x, ry.x) * w - spread * clip * rf.x) / w2 * picture * 0.5;
+  vec2 jv = (vec2(rx.y, ry.y) * w - spread * clip * rf.y) / w2 * picture * 0.5;
+  float det = max(abs(cross2(ju, jv)), 1e-30);
+  float extent = length(c23.xy - c01.xy) + length(c23.zw - c01.zw);
+  vec2 m = kGrow * vec2(length(ju * to.x + jv * to.y), length(ju * from.x + jv * from.y)) / det;
+  at.xy += miter(to, from, min(m, vec2(extent)));
+  gl_Position = to_clip(vec2(dot(rx.xyw, at), dot(ry.xyw, at)), dot(rf.xyw, at));
+}

@@ -1,0 +1,75 @@
+// A DP's surface point under a pixel: the ray meets the quadric again, and everything follows from F there.
+
+bool is_mine(uint number) { return (number & kTriangle) == 0u; }
+
+#ifdef CURVES
+// The second fundamental form in an orthonormal frame of the tangent plane, in view space: −∇²F over |∇F|, with ∇²F taken to where
+// the placement and the camera put it. Its eigenvalues, the one that is larger in size first, and that one's direction.
+void principal_curvatures(vec3 n, float gradient, mat3 to_local, vec4 bend, float c, out vec2 k, out vec3 direction) {
+  vec3 e1 = normalize(abs(n.x) < 0.6 ? cross(n, vec3(1.0, 0.0, 0.0)) : cross(n, vec3(0.0, 1.0, 0.0))), e2 = cross(n, e1);
+  mat3 form = mat3(bend.x, 0.0, bend.z, 0.0, bend.y, bend.w, bend.z, bend.w, c);
+  vec3 l1 = to_local * e1, l2 = to_local * e2, m1 = form * l1;
+  float h11 = dot(l1, m1) / gradient, h12 = dot(l2, m1) / gradient, h22 = dot(l2, form * l2) / gradient;
+  float mean = 0.5 * (h11 + h22), half_gap = 0.5 * (h11 - h22), radius = length(vec2(half_gap, h12));
+  bool upper = mean >= 0.0;
+  k = upper ? vec2(mean + radius, mean - radius) : vec2(mean - radius, mean + radius);
+  // Of the two ways to write an eigenvector of a symmetric 2x2 matrix, the one that does not cancel.
+  vec2 v = half_gap >= 0.0 == upper ? vec2(abs(half_gap) + radius, upper ? h12 : -h12)
+                                    : vec2(upper ? h12 : -h12, abs(half_gap) + radius);
+  direction = dot(v, v) > 0.0 ? normalize(v.x * e1 + v.y * e2) : e1;
+}
+#endif
+
+Surface surface_at(uint number, vec2 at) {
+  int slot = int(number & kIdMask) - 1;
+  uvec4 t0 = texelFetch(slots, slot * kSlotTexels), t1 = texelFetch(slots, slot * kSlotTexels + 1),
+        t2 = texelFetch(slots, slot * kSlotTexels + 2), t5 = texelFetch(slots, slot * kSlotTexels + 5);
+  vec4 t3 = slot_texel(slot, 3), bend = slot_texel(slot, 4);
+  vec3 s = uintBitsToFloat(t0.xyz), f = uintBitsToFloat(t1.xyz), p = uintBitsToFloat(t2.xyz), q = t3.xyz;
+  float c = uintBitsToFloat(t5.x);
+  uint meta = t0.w;
+
+  vec3 across = at.x * p + at.y * q, o = s + start * across, d = f + spread * across;
+  float t_near = -dot(o, d) / dot(d, d), first, second, slope;
+  o += t_near * d;
+  if (!quadric_roots(bend, c, o, d, first, second, slope)) first = second = 0.0;
+  float t = (number & kSecondRoot) != 0u ? second : first;
+  vec3 x = o + t * d, g = quadric_gradient(bend, c, x);
+
+  vec3 right = p * axis_scale.x, up = q * axis_scale.y;
+  vec3 back = spread * (axis_offset.x * right + axis_offset.y * up) - f;
+  vec3 gradient = vec3(dot(g, right), dot(g, up), dot(g, back));
+  float size = length(gradient), outside = (meta & kFlipped) != 0u ? -1.0 : 1.0;
+
+  Surface result;
+  vec3 n = gradient / size;
+  result.normal = outside * n;
+  result.depth = start_depth + t_near + t;
+  result.face = t5.w;
+  result.color = t2.w;
+  result.primitive = 0u;
+#ifdef NUMBERS
+  result.primitive = texelFetch(slots, slot * kSlotTexels + 11).x;
+#endif
+  result.curvature = vec2(0.0);
+  result.direction = vec3(0.0);
+#ifdef CURVES
+  principal_curvatures(n, size, mat3(right, up, back), bend, c, result.curvature, result.direction);
+  result.curvature *= outside;
+#endif
+  result.edge = 0.0;
+#ifdef EDGES
+  // How the point moves on the surface when the pixel's place moves by one pixel.
+  float reach = start + spread * (t_near + t);
+  vec3 px = reach * pixel.x * p, py = reach * pixel.y * q;
+  float along = dot(g, d);
+  px -= d * (dot(g, px) / along);
+  py -= d * (dot(g, py) / along);
+  float distance_px = edge_pixels(slot, meta, int(t1.w), x, px, py);
+  // Lines give way on what is only a few pixels large, or it would be drawn black.
+  vec4 c01 = slot_texel(slot, 6), c23 = slot_texel(slot, 7);
+  float extent = length(c23.xy - c01.xy) / max(min(length(px), length(py)), 1e-30);
+  result.edge = clamp(edge_half_width + 0.5 - distance_px, 0.0, 1.0) * clamp((extent - 3.0) / 8.0, 0.0, 1.0);
+#endif
+  return result;
+}

@@ -1,0 +1,150 @@
+// The first half of a frame: which primitive is seen at every pixel.
+#include "renderer_impl.h"
+
+namespace dupin {
+namespace {
+
+constexpr std::size_t kSlotBytes = 12 * 16;
+constexpr const char* kSlotOutputs[] = {"slot0", "slot1", "slot2", "slot3", "slot4",  "slot5",
+                                        "slot6", "slot7", "slot8", "slot9", "slot10", "slot11"};
+
+}  // namespace
+
+void Renderer::Impl::upload_list(const Scene::Impl& scene) {
+  instances_.assign(list_.instances.data(), list_.instances.size() * sizeof(InstanceTexels), GL_STREAM_DRAW);
+  instances_.bind(kInstancesUnit);
+  scene.heap.bind(kHeapUnit);
+  if (!list_.items.empty()) {
+    gl->BindBuffer(GL_ARRAY_BUFFER, items_.name());
+    gl->BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(list_.items.size() * sizeof(DrawItem)),
+                   list_.items.data(), GL_STREAM_DRAW);
+  }
+  std::vector<std::uint32_t> runs;
+  std::uint32_t first = 0;
+  for (const TriangleRun& run : list_.runs) {
+    runs.insert(runs.end(), {first, run.instance, run.first_triangle, run.first_primitive});
+    first += run.triangles;
+  }
+  if (!runs.empty()) runs_.assign(runs.data(), runs.size() * 4, GL_STREAM_DRAW);
+}
+
+Status Renderer::Impl::fill_slots() {
+  const std::size_t count = list_.items.size();
+  if (count == 0) return {};
+  if (count * 12 > static_cast<std::size_t>(max_texels))
+    return {StatusCode::limit, "more primitives in view than this OpenGL context's texture buffers can hold"};
+  slots_.reserve(count * kSlotBytes, GL_DYNAMIC_COPY);
+  ProgramText text{{"prepare.vert"}, {}, {}, {}, {}};
+  text.feedback.assign(std::begin(kSlotOutputs), std::end(kSlotOutputs));
+  const auto prepare = program("prepare", text);
+  if (!prepare) return prepare.status();
+  gl->Uniform1f(gl->GetUniformLocation(*prepare, "spread"), view_spread_);
+  gl->Uniform1f(gl->GetUniformLocation(*prepare, "start_depth"), static_cast<float>(list_.start_depth));
+  gl->BindVertexArray(item_array_.name());
+  gl->Enable(GL_RASTERIZER_DISCARD);
+  gl->BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, slots_.buffer());
+  gl->BeginTransformFeedback(GL_POINTS);
+  gl->DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(count));
+  gl->EndTransformFeedback();
+  gl->BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+  gl->Disable(GL_RASTERIZER_DISCARD);
+  slots_.bind(kSlotsUnit);
+  return {};
+}
+
+void Renderer::Impl::grow_indices(std::uint32_t dps) {
+  if (dps <= indexed_dps_) return;
+  dps = std::max(dps, indexed_dps_ * 2);
+  constexpr std::uint32_t kQuad[] = {0, 1, 2, 0, 2, 3};
+  // Corners 0–3 at z lo and 4–7 at z hi; counter-clockwise from outside.
+  constexpr std::uint32_t kPrism[] = {0, 3, 2, 0, 2, 1, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
+                                      1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7};
+  std::vector<std::uint32_t> quads, prisms;
+  for (std::uint32_t i = 0; i < dps; ++i) {
+    for (const std::uint32_t k : kQuad) quads.push_back(4 * i + k);
+    for (const std::uint32_t k : kPrism) prisms.push_back(8 * i + k);
+  }
+  const auto fill = [&](const GlVertexArray& array, const GlBuffer& buffer,
+                        const std::vector<std::uint32_t>& indices) {
+    gl->BindVertexArray(array.name());
+    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer.name());
+    gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * 4), indices.data(),
+                   GL_STATIC_DRAW);
+  };
+  fill(quad_array_, quads_, quads);
+  fill(prism_array_, prisms_, prisms);
+  indexed_dps_ = dps;
+}
+
+Status Renderer::Impl::draw_dps(const ViewRays& view) {
+  std::uint32_t first = 0;
+  for (int kind = 0; kind < kDpKinds; ++kind) {
+    const std::uint32_t count = list_.count[static_cast<std::size_t>(kind)];
+    if (count == 0) continue;
+    const bool planar = kind <= kPlanarPieces, pieces = kind == kPlanarPieces || kind == kCurvedPieces;
+    ProgramText text;
+    text.vertex = {"proxy.glsl", planar ? "planar.vert" : "curved.vert"};
+    if (!planar) text.fragment.push_back("quadric.glsl");
+    if (pieces) text.fragment.push_back("pieces.glsl"), text.defines.push_back("PIECES");
+    text.fragment.push_back(planar ? "planar.frag" : "curved.frag");
+    const auto name = program("dp" + std::to_string(kind), text);
+    if (!name) return name.status();
+    set_view(*name, view);
+    gl->Uniform1i(gl->GetUniformLocation(*name, "first_slot"), static_cast<GLint>(first));
+    grow_indices(count);
+    gl->BindVertexArray(planar ? quad_array_.name() : prism_array_.name());
+    if (!planar) gl->Enable(GL_CULL_FACE);
+    gl->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(count * (planar ? 6 : 36)), GL_UNSIGNED_INT, nullptr);
+    gl->Disable(GL_CULL_FACE);
+    first += count;
+  }
+  return {};
+}
+
+Status Renderer::Impl::draw_triangles(const Pass& pass) {
+  if (list_.runs.empty()) return {};
+  const auto name = program("triangle", {{"proxy.glsl", "triangle.vert"}, {"triangle.frag"}, {}, {}, {}});
+  if (!name) return name.status();
+  set_view(*name, pass.view);
+  const GLint instance = gl->GetUniformLocation(*name, "instance"),
+              number = gl->GetUniformLocation(*name, "first_number");
+  gl->BindVertexArray(pass.scene->mesh_array.name());
+  std::uint32_t first = 0;
+  for (const TriangleRun& run : list_.runs) {
+    gl->Uniform1i(instance, static_cast<GLint>(run.instance));
+    gl->Uniform1ui(number, first);
+    gl->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * run.triangles), GL_UNSIGNED_INT,
+                     reinterpret_cast<const void*>(std::size_t{12} * run.first_triangle));
+    first += run.triangles;
+  }
+  return {};
+}
+
+Status Renderer::Impl::draw_visibility(const Pass& pass) {
+  gl->BindFramebuffer(GL_FRAMEBUFFER, visibility_framebuffer_.name());
+  gl->Viewport(0, 0, width_, height_);
+  gl->Enable(GL_DEPTH_TEST);
+  gl->DepthMask(GL_TRUE);
+  gl->DepthFunc(GL_GREATER);
+  gl->FrontFace(GL_CW);  // the picture's rows run downwards
+  gl->CullFace(GL_FRONT);
+  if (gl->ClipControl) gl->ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  const GLuint nothing[4] = {0, 0, 0, 0};
+  const GLfloat farthest = 0;
+  gl->ClearBufferuiv(GL_COLOR, 0, nothing);
+  gl->ClearBufferfv(GL_DEPTH, 0, &farthest);
+  const Status dps = draw_dps(pass.view);
+  return dps.ok() ? draw_triangles(pass) : dps;
+}
+
+Status Renderer::Impl::run(const Pass& pass) {
+  build_draw_list(*pass.scene, pass.view, list_);
+  view_spread_ = pass.view.perspective ? 1.0F : 0.0F;
+  upload_list(*pass.scene);
+  Status status = fill_slots();
+  if (status.ok()) status = draw_visibility(pass);
+  if (status.ok() && pass.pictures) status = shade(pass);
+  return status;
+}
+
+}  // namespace dupin
