@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "curve_fit.h"
 #include "curve_tools.h"
@@ -33,7 +34,6 @@ class FaceBuilder {
     result_.face.tolerance = BRep_Tool::Tolerance(task_.shape);
     for (const auto& wire : task_.wires) add_wire(wire);
     if (result_.skip) return std::move(result_);
-    if (winding_u_ != 0 || winding_v_ != 0 || has_winding_) result_.needs_repair = true;
     order_loops();
     set_box();
     return std::move(result_);
@@ -47,11 +47,9 @@ class FaceBuilder {
       if (use) uses.push_back(std::move(*use));
     }
     if (uses.empty()) return;
-    WireLoops loops = assemble_loops(surface_, std::move(uses), result_.face.tolerance);
-    winding_u_ += loops.winding_u, winding_v_ += loops.winding_v;
-    has_winding_ = has_winding_ || loops.winding_u != 0 || loops.winding_v != 0;
+    WireLoops loops = assemble_loops(surface_, std::move(uses), std::max(result_.face.tolerance, kAgreement * size_));
     result_.largest_gap = std::max(result_.largest_gap, loops.gap);
-    if (loops.misses_curve) result_.needs_repair = true;
+    if (loops.winding) result_.repair = "its boundary runs around the surface without a seam";
     for (auto& loop : loops.loops) loops_.push_back(std::move(loop));
   }
 
@@ -143,7 +141,11 @@ class FaceBuilder {
       result_.face.loops.push_back(std::move(loop));
     }
     result_.face.tolerance = std::max(result_.face.tolerance, result_.largest_gap);
-    if (result_.largest_gap > kLargestGap * size_) result_.needs_repair = true;
+    if (result_.largest_gap > kLargestGap * size_) {
+      char text[80];
+      std::snprintf(text, sizeof text, "its boundary does not close, by %.3g", result_.largest_gap);
+      result_.repair = text;
+    }
   }
 
   void set_box() {
@@ -167,8 +169,6 @@ class FaceBuilder {
   double size_;
   Box2 domain_;
   std::vector<std::vector<EdgeUse>> loops_;
-  int winding_u_ = 0, winding_v_ = 0;
-  bool has_winding_ = false;
   FaceResult result_;
 };
 

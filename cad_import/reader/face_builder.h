@@ -17,7 +17,7 @@ struct FaceTask {
 struct FaceResult {
   Face face;                       ///< uses of kNewDegenerateEdge still to be numbered
   std::optional<std::string> skip; ///< why the face cannot be had
-  bool needs_repair = false;       ///< its loops do not close in parameters
+  std::optional<std::string> repair;  ///< why its wires need to be repaired first
   double largest_gap = 0;
   std::vector<std::pair<std::uint32_t, double>> deviations;  ///< per edge, how far its pcurve lies from its curve
   int refitted = 0;                ///< pcurves that were made from the edge's curve

@@ -110,9 +110,8 @@ class Assembly {
   void close(std::vector<EdgeUse>& loop) {
     const Vec2 d = loop.front().start() - loop.back().end();
     const Vec2 turns = whole_periods(d, period_u_, period_v_);
-    if (turns.x != 0) result_.winding_u += d.x > 0 ? 1 : -1;
-    if (turns.y != 0) result_.winding_v += d.y > 0 ? 1 : -1;
-    if (turns.x == 0 && turns.y == 0) bridge(loop, d, loop.front().start());
+    if (turns.x != 0 || turns.y != 0) result_.winding = true;
+    else bridge(loop, d, loop.front().start());
   }
 
   // Joins the loop's end with `to`, which lies `d` further on, where they differ.
@@ -123,16 +122,12 @@ class Assembly {
     }
     const Vec2 from = loop.back().end();
     const Vec3 p = point_at(surface_, from.x, from.y);
-    double off = 0;  // a collapsed side stays at one point all the way
+    double off = 0;  // nothing at a pole: a collapsed side stays at one point all the way
     for (int i = 1; i <= 4; ++i) {
       const Vec2 q = from + (to - from) * (i / 4.0);
       off = std::max(off, distance(point_at(surface_, q.x, q.y), p));
     }
     result_.gap = std::max(result_.gap, off);
-    if (off > tolerance_) {
-      result_.misses_curve = true;
-      return;
-    }
     EdgeUse side;
     side.trim.edge = kNewDegenerateEdge;
     side.trim.degenerate = true;

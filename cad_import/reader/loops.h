@@ -25,12 +25,12 @@ inline constexpr std::uint32_t kNewDegenerateEdge = 0xffffffffu;
 
 struct WireLoops {
   std::vector<std::vector<EdgeUse>> loops;
-  double gap = 0;             ///< the largest distance in space between one use's end and the next one's start
-  int winding_u = 0, winding_v = 0;  ///< periods by which a loop fails to close: its seam is missing
-  bool misses_curve = false;  ///< a gap in parameters that is larger than the tolerances
+  double gap = 0;        ///< the largest distance in space between one use's end and the next one's start
+  bool winding = false;  ///< a loop closes only after whole periods: its seam is missing
 };
 
-/// Orders one wire's uses, moves their pcurves by whole periods so that they join, and fills in collapsed sides.
+/// Orders one wire's uses, moves their pcurves by whole periods so that they join, and closes gaps in parameters that are
+/// larger than the tolerance by straight collapsed sides.
 WireLoops assemble_loops(const Surface& surface, std::vector<EdgeUse> uses, double tolerance);
 
 /// Twice the area that a loop encloses in the parameter plane, positive when counter-clockwise.

@@ -134,7 +134,7 @@ class PartBuilder {
     for (std::size_t i = 0; i < pending_.size(); ++i) {
       Pending& p = pending_[i];
       const FaceSource& source = source_.faces[i];
-      if (!p.result.skip && p.result.needs_repair) p.result.skip = "its boundary does not close";
+      if (!p.result.skip) p.result.skip = p.result.repair;
       if (p.result.skip) {
         built_.skipped.push_back({face_name(i), *p.result.skip, 1});
         continue;
