@@ -57,6 +57,8 @@ Image::Channel& Image::channel(std::string_view name) {
 
 Image to_image(const Frame& frame) {
   Image image{frame.width, frame.height, {}};
+  image.pixel_constant = frame.pixel_constant;
+  image.pixel_per_depth = frame.pixel_per_depth;
   add(image, frame.color, {"R", "G", "B", "A"});
   add(image, frame.normal, {"N.X", "N.Y", "N.Z"});
   add(image, frame.depth, {"Z"});

@@ -21,6 +21,9 @@ struct Image {
   };
   int width = 0, height = 0;
   std::vector<Channel> channels;
+  /// The edge of a pixel in model units at depth Z is pixel_constant + pixel_per_depth · Z; both 0 where that
+  /// is not known.
+  double pixel_constant = 0, pixel_per_depth = 0;
 
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
   const Channel* find(std::string_view name) const;

@@ -1,6 +1,7 @@
 // OpenEXR, whose errors are exceptions: none leaves this file.
 #include <Imath/ImathBox.h>
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfDoubleAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
@@ -16,6 +17,8 @@
 
 namespace dupin {
 namespace {
+
+constexpr const char *kPixelConstant = "dupin.pixelConstant", *kPixelPerDepth = "dupin.pixelPerDepth";
 
 class MemoryStream final : public Imf::OStream {
  public:
@@ -42,6 +45,8 @@ bool is_number(const std::string& channel) {
 std::vector<char> encode(const Image& image) {
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::ZIP_COMPRESSION;
+  if (image.pixel_constant > 0) header.insert(kPixelConstant, Imf::DoubleAttribute(image.pixel_constant));
+  if (image.pixel_per_depth > 0) header.insert(kPixelPerDepth, Imf::DoubleAttribute(image.pixel_per_depth));
   Imf::FrameBuffer pixels;
   std::map<std::string, std::vector<unsigned>> numbers;
   const std::size_t row = sizeof(float) * static_cast<std::size_t>(image.width);
@@ -71,6 +76,10 @@ Image decode(const std::string& path) {
   Image image;
   image.width = window.max.x - window.min.x + 1;
   image.height = window.max.y - window.min.y + 1;
+  if (const auto* a = file.header().findTypedAttribute<Imf::DoubleAttribute>(kPixelConstant))
+    image.pixel_constant = a->value();
+  if (const auto* a = file.header().findTypedAttribute<Imf::DoubleAttribute>(kPixelPerDepth))
+    image.pixel_per_depth = a->value();
   Imf::FrameBuffer pixels;
   const auto& channels = file.header().channels();
   for (auto c = channels.begin(); c != channels.end(); ++c) image.channels.push_back({c.name(), {}});

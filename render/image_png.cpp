@@ -19,9 +19,12 @@ void append(png_structp png, png_bytep data, png_size_t size) {
 }
 void ignore(png_structp) {}
 void quiet(png_structp, png_const_charp) {}
+[[noreturn]] void leave(png_structp png, png_const_charp) {
+  png_longjmp(png, 1);
+}
 
 bool encode(const Image8& image, std::vector<char>& bytes) {
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, quiet);
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, leave, quiet);
   png_infop info = png ? png_create_info_struct(png) : nullptr;
   if (!info || setjmp(png_jmpbuf(png))) {
     png_destroy_write_struct(&png, &info);
@@ -98,7 +101,7 @@ Result<Image8> read_png(const std::string& path) {
   const auto close = [](std::FILE* f) { std::fclose(f); };
   const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(path.c_str(), "rb"), close);
   if (!file) return {StatusCode::unreadable, path + ": cannot be read"};
-  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, quiet);
+  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, leave, quiet);
   png_infop info = png ? png_create_info_struct(png) : nullptr;
   Image8 image;
   bool ok = info && read_header(png, info, file.get(), image);

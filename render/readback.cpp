@@ -46,6 +46,7 @@ std::vector<float> positions(const ViewRays& view, const std::vector<float>& dep
 void Renderer::Impl::read_frame(const ViewRays& view, const DrawOptions& options, Frame& frame) {
   frame.width = width_;
   frame.height = height_;
+  (view.perspective ? frame.pixel_per_depth : frame.pixel_constant) = pixel_size(view, 1);
   const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
   const unsigned wanted = options.outputs, pictures = pictures_for(wanted);
   if (wanted & kColor) {

@@ -76,12 +76,13 @@ struct FrameStats {
 /// pixel.
 struct Frame {
   int width = 0, height = 0;
-  std::vector<float> color;      ///< R G B A, linear, premultiplied by A
-  std::vector<float> normal;     ///< 3
-  std::vector<float> depth;      ///< 1
-  std::vector<float> position;   ///< 3
-  std::vector<float> curvature;  ///< 2
-  std::vector<float> direction;  ///< 3
+  double pixel_constant = 0, pixel_per_depth = 0;  ///< see Image
+  std::vector<float> color;                        ///< R G B A, linear, premultiplied by A
+  std::vector<float> normal;                       ///< 3
+  std::vector<float> depth;                        ///< 1
+  std::vector<float> position;                     ///< 3
+  std::vector<float> curvature;                    ///< 2
+  std::vector<float> direction;                    ///< 3
   std::vector<std::uint32_t> face, primitive;
   std::vector<float> uv;  ///< 2
   FrameStats stats;
