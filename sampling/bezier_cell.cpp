@@ -214,7 +214,8 @@ bool CellFitter::certify(const CollapsedSides& collapsed, double tolerance, doub
   const double gz = 1 - std::abs(dp.a) * ax - std::abs(dp.b) * ay - std::abs(dp.c) * (az + tolerance);
   if (!(gz >= kLeastSheet)) return false;
   out.bound = value_bound / gz;
-  if (!(out.bound <= tolerance)) return false;
+  out.quadric_decides = !(out.bound <= tolerance);
+  if (out.quadric_decides) return false;
   dp.z_lo = box_.lo.z - out.bound, dp.z_hi = box_.hi.z + out.bound;
   return certify_normals(collapsed, normal_tolerance, gz, out);
 }
@@ -280,6 +281,7 @@ bool CellFitter::certify_normals(const CollapsedSides& collapsed, double normal_
   const double d0 = std::max(1 - b00.lo, b00.hi - 1), d1 = std::max(1 - b11.lo, b11.hi - 1);
   const double twist = std::sqrt(d0 * d0 + d1 * d1 + b01.magnitude() * b01.magnitude() + b10.magnitude() * b10.magnitude());
   if (!(twist <= kMostTwist)) return false;
+  out.quadric_decides = true;
   const Range fu = derivative_range(f_, true, for_u, 2), fv = derivative_range(f_, false, for_v, 2);
   const double gx = (fu * inv[0][0] + fv * inv[1][0]).magnitude(), gy = (fu * inv[0][1] + fv * inv[1][1]).magnitude();
   const double ax = std::max(-box_.lo.x, box_.hi.x), ay = std::max(-box_.lo.y, box_.hi.y), az = std::max(-box_.lo.z, box_.hi.z);
@@ -310,7 +312,9 @@ CellFit CellFitter::fit(const BezierPatch& cell, double tolerance, double normal
   fit_third_order(out.dp);
   out.valid = certify(collapsed, tolerance, normal_tolerance, out);
   if (!out.valid) {
-    // Along the parameter in which F∘S varies more; where the quadric says nothing (a strongly bent cell), along the longer side.
+    // Where the quadric is not close enough, along the parameter in which F∘S varies more; where the cell is bent or twisted too
+    // much to be looked at that way, along its longer side.
+    if (!out.quadric_decides) return out;
     bernstein::derivative_u(f_, tmp_), bernstein::derivative_v(f_, d_);
     const double u = bernstein::magnitude(tmp_), v = bernstein::magnitude(d_);
     if (u > 1.3 * v || v > 1.3 * u) out.split_u = u > v;

@@ -22,6 +22,7 @@ CollapsedSides collapsed_sides(const BezierPatch& patch);
 struct CellFit {
   bool valid = false;     ///< the cell is a graph over the DP's tangent plane and the quadric one sheet above it; the rest holds
   bool split_u = true;    ///< if the cell has to be split: along u or along v
+  bool quadric_decides = false;  ///< it is one graph, only not close enough to the quadric
   double bound = 0;       ///< largest distance between quadric and surface, along the DP's normal
   double normal_bound = 0;
   QuadricDp dp;           ///< frame, quadric, z-range

@@ -5,6 +5,7 @@
 
 #include "bezier_cell.h"
 #include "chart_region.h"
+#include "fitted_patches.h"
 
 namespace dupin {
 namespace {
@@ -36,23 +37,30 @@ class PatchFace {
   PatchFaceResult make() {
     PatchFaceResult result;
     std::vector<BezierPatch> patches = bezier_patches(surface_, in_.boundary.uv_box);
-    if (patches.empty()) {
+    if (!patches.empty()) {
+      for (const BezierPatch& patch : patches) divide_patch(patch);
+    } else {
       result.rational = false;
-      return result;
-    }
-    for (BezierPatch& patch : patches) {
-      root_ = patch;
-      Cell cell;
-      cell.patch = std::move(patch);
-      for (const FaceLoop& loop : in_.boundary.loops)
-        for (const FaceArc& arc : loop.arcs) cell.arcs.push_back(&arc);
-      divide(cell);
+      for (const FittedPatch& fitted : fitted_patches(surface_, in_.boundary.uv_box, in_.tolerance, in_.normal_tolerance)) {
+        fitted_position_ = fitted.position_error, fitted_normal_ = fitted.normal_error;
+        divide_patch(fitted.patch);
+        result.defined = true;
+      }
     }
     result.dps = made_;
     return result;
   }
 
  private:
+  void divide_patch(const BezierPatch& patch) {
+    root_ = patch;
+    Cell cell;
+    cell.patch = patch;
+    for (const FaceLoop& loop : in_.boundary.loops)
+      for (const FaceArc& arc : loop.arcs) cell.arcs.push_back(&arc);
+    divide(cell);
+  }
+
   void note_seam(const Trim& trim) {
     const Edge& edge = in_.part.edges[trim.edge];
     const Vec2 p = point_at(trim.pcurve, (edge.t0 + edge.t1) / 2);
@@ -92,7 +100,7 @@ class PatchFace {
     const double tolerance = allowed * (cell.known ? 1 : kTrimTolerance);
     allowed_ = allowed;
     const bool speck = box.diagonal() <= allowed || cell.depth >= kMaxDepth;
-    CellFit fit = fitter_.fit(cell.patch, tolerance, in_.normal_tolerance);
+    CellFit fit = fitter_.fit(cell.patch, tolerance - fitted_position_, in_.normal_tolerance - fitted_normal_);
     if (fit.valid && emit(cell, uv, fit)) return;
     if (speck) return emit_speck(cell, uv, box, fit);
     split(cell, fit.split_u);
@@ -118,7 +126,8 @@ class PatchFace {
     QuadricDp& dp = fit.dp;
     dp.face = in_.face_index;
     dp.cell = uv;
-    dp.bound = fit.bound, dp.normal_bound = fit.normal_bound;
+    dp.bound = fit.bound + fitted_position_, dp.normal_bound = fit.normal_bound + fitted_normal_;
+    dp.sampled_bound = fitted_position_ > 0;
     dp.flipped = in_.face.reversed;
     if (make_footprint(uv, fit)) return emit_region(cell, uv, dp);
     return cell.arcs.empty() && emit_bordered(cell, fit);
@@ -293,6 +302,7 @@ class PatchFace {
   bool seam_[4] = {false, false, false, false};
   BezierPatch root_;
   CellFitter fitter_;
+  double fitted_position_ = 0, fitted_normal_ = 0;  ///< what an interpolated patch is off already
   double allowed_ = 0;  ///< the tolerance where the present cell is
   int made_ = 0;
 };

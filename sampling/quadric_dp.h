@@ -74,6 +74,7 @@ struct QuadricDp {
   /// Certified: no point drawn is farther than `bound` (model units) from the face's surface, and no drawn normal turned by
   /// more than `normal_bound` (radians) from the surface's there. docs/mathematics.md, "Certificates".
   double bound = 0, normal_bound = 0;
+  bool sampled_bound = false;  ///< on an offset surface the bounds hold a sampled part: estimated, not certified
   bool speck = false;  ///< smaller than the tolerance, at a singular point: flat, and `normal_bound` says nothing
   Box2 cell;  ///< the parameter rectangle it was made for; where u, v of a pixel are searched from
   Vec3 n() const { return cross(u, v); }

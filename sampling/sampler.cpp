@@ -68,7 +68,7 @@ class PartSampler {
     const FaceBoundary boundary = face_boundary(part_, face, chains_, true);
     const PatchFaceInput in{part_, face, index, boundary, field_, options_.normal_tolerance};
     const PatchFaceResult result = make_patch_face(in, out.dps);
-    if (!result.rational) out.failure = "its " + std::string(kind_name(surface)) + " surface has no rational form";
+    if (!result.rational && !result.defined) out.failure = "its " + std::string(kind_name(surface)) + " surface is not defined everywhere";
   }
 
  private:
