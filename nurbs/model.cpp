@@ -1,14 +1,18 @@
 #include "model.h"
+
 namespace dupin {
+
 std::size_t face_instance_count(const Model& model) {
-  std::size_t n = 0;
-  for (const Instance& instance : model.instances) n += model.parts[instance.part].faces.size();
-  return n;
+  std::size_t count = 0;
+  for (const Instance& instance : model.instances) count += model.parts[instance.part].faces.size();
+  return count;
 }
+
 Box3 bounding_box(const Model& model) {
   Box3 box;
-  for (const Instance& instance : model.instances) box.add(transform_box(instance.to_world, model.parts[instance.part].box));
+  for (const Instance& instance : model.instances)
+    box.add(transform_box(instance.to_world, model.parts[instance.part].box));
   return box;
 }
-Status check(const Model&) { return {}; }
-}
+
+}  // namespace dupin
