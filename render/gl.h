@@ -11,88 +11,43 @@
 namespace dupin {
 
 // Every function used, as X(part of the pointer type's name, name).
-#define DUPIN_GL_FUNCTIONS(X)                                                                                              \
-  X(ACTIVETEXTURE, ActiveTexture)                                                                                          \
-  X(ATTACHSHADER, AttachShader)                                                                                            \
-  X(BEGINTRANSFORMFEEDBACK, BeginTransformFeedback) X(BINDBUFFER, BindBuffer) X(                                           \
-      BINDBUFFERBASE,                                                                                                      \
-      BindBufferBase) X(BINDBUFFERRANGE,                                                                                   \
-                        BindBufferRange) X(BINDFRAMEBUFFER,                                                                \
-                                           BindFramebuffer) X(BINDSAMPLER,                                                 \
-                                                              BindSampler) X(BINDTEXTURE,                                  \
-                                                                             BindTexture) X(BINDVERTEXARRAY,               \
-                                                                                            BindVertexArray)               \
-      X(BLENDEQUATIONSEPARATE, BlendEquationSeparate) X(BLENDFUNCSEPARATE, BlendFuncSeparate) X(BUFFERDATA, BufferData) X( \
-          BUFFERSUBDATA,                                                                                                   \
-          BufferSubData) X(CHECKFRAMEBUFFERSTATUS,                                                                         \
-                           CheckFramebufferStatus) X(CLEARBUFFERFV, ClearBufferfv)                                         \
-          X(CLEARBUFFERUIV, ClearBufferuiv) X(COLORMASK, ColorMask) X(COLORMASKI, ColorMaski) X(                           \
-              COMPILESHADER,                                                                                               \
-              CompileShader) X(CREATEPROGRAM,                                                                              \
-                               CreateProgram) X(CREATESHADER, CreateShader)                                                \
-              X(CULLFACE, CullFace) X(DELETEBUFFERS, DeleteBuffers) X(DELETEFRAMEBUFFERS, DeleteFramebuffers) X(           \
-                  DELETEPROGRAM,                                                                                           \
-                  DeleteProgram) X(DELETESHADER,                                                                           \
-                                   DeleteShader) X(DELETETEXTURES, DeleteTextures)                                         \
-                  X(DELETEVERTEXARRAYS, DeleteVertexArrays) X(DEPTHFUNC, DepthFunc) X(DEPTHMASK, DepthMask) X(             \
-                      DEPTHRANGE,                                                                                          \
-                      DepthRange) X(DISABLE, Disable) X(DISABLEI, Disablei)                                                \
-                      X(DRAWARRAYS, DrawArrays) X(DRAWBUFFERS, DrawBuffers) X(DRAWELEMENTS, DrawElements) X(               \
-                          ENABLE,                                                                                          \
-                          Enable) X(ENABLEI, Enablei) X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray)                  \
-                          X(ENDTRANSFORMFEEDBACK, EndTransformFeedback) X(FINISH, Finish) X(                               \
-                              FRAMEBUFFERTEXTURE2D,                                                                        \
-                              FramebufferTexture2D) X(FRONTFACE, FrontFace)                                                \
-                              X(GENBUFFERS, GenBuffers) X(GENFRAMEBUFFERS, GenFramebuffers) X(                             \
-                                  GENTEXTURES,                                                                             \
-                                  GenTextures) X(GENVERTEXARRAYS,                                                          \
-                                                 GenVertexArrays) X(GETBOOLEANI_V, GetBooleani_v)                          \
-                                  X(GETBOOLEANV,                                                                           \
-                                    GetBooleanv) X(GETDOUBLEV,                                                             \
-                                                   GetDoublev) X(GETERROR,                                                 \
-                                                                 GetError) X(GETFLOATV, GetFloatv)                         \
-                                      X(GETFRAMEBUFFERATTACHMENTPARAMETERIV, GetFramebufferAttachmentParameteriv) X(       \
-                                          GETINTEGER64I_V, GetInteger64i_v) X(GETINTEGERI_V, GetIntegeri_v)                \
-                                          X(GETINTEGERV,                                                                   \
-                                            GetIntegerv) X(GETPROGRAMINFOLOG,                                              \
-                                                           GetProgramInfoLog) X(GETPROGRAMIV, GetProgramiv)                \
-                                              X(GETSHADERINFOLOG, GetShaderInfoLog) X(GETSHADERIV, GetShaderiv) X(         \
-                                                  GETSTRING, GetString) X(GETSTRINGI, GetStringi)                          \
-                                                  X(GETTEXPARAMETERIV,                                                     \
-                                                    GetTexParameteriv) X(GETUNIFORMLOCATION,                               \
-                                                                         GetUniformLocation) X(ISENABLED,                  \
-                                                                                               IsEnabled)                  \
-                                                      X(ISENABLEDI, IsEnabledi) X(LINKPROGRAM, LinkProgram) X(             \
-                                                          PIXELSTOREI,                                                     \
-                                                          PixelStorei) X(POLYGONMODE,                                      \
-                                                                         PolygonMode) X(READBUFFER, ReadBuffer)            \
-                                                          X(READPIXELS, ReadPixels) X(SCISSOR, Scissor) X(                 \
-                                                              SHADERSOURCE,                                                \
-                                                              ShaderSource) X(STENCILMASK, StencilMask)                    \
-                                                              X(TEXBUFFER,                                                 \
-                                                                TexBuffer) X(TEXIMAGE2D,                                   \
-                                                                             TexImage2D) X(TEXPARAMETERI,                  \
-                                                                                           TexParameteri)                  \
-                                                                  X(                                                       \
-                                                                      TRANSFORMFEEDBACKVARYINGS,                           \
-                                                                      TransformFeedbackVaryings) X(UNIFORM1F,              \
-                                                                                                   Uniform1f)              \
-                                                                      X(UNIFORM1I,                                         \
-                                                                        Uniform1i) X(UNIFORM1UI,                           \
-                                                                                     Uniform1ui) X(UNIFORM2F,              \
-                                                                                                   Uniform2f)              \
-                                                                          X(UNIFORM3F,                                     \
-                                                                            Uniform3f) X(UNIFORM4F,                        \
-                                                                                         Uniform4f)                        \
-                                                                              X(UNIFORMMATRIX3FV,                          \
-                                                                                UniformMatrix3fv)                          \
-                                                                                  X(USEPROGRAM, UseProgram) X(             \
-                                                                                      VERTEXATTRIBIPOINTER,                \
-                                                                                      VertexAttribIPointer)                \
-                                                                                      X(VERTEXATTRIBPOINTER,               \
-                                                                                        VertexAttribPointer)               \
-                                                                                          X(VIEWPORT,                      \
-                                                                                            Viewport)
+// clang-format off
+#define DUPIN_GL_FUNCTIONS(X)                                                                               \
+  X(ACTIVETEXTURE, ActiveTexture) X(ATTACHSHADER, AttachShader)                                             \
+  X(BEGINTRANSFORMFEEDBACK, BeginTransformFeedback) X(BINDBUFFER, BindBuffer)                               \
+  X(BINDBUFFERBASE, BindBufferBase) X(BINDBUFFERRANGE, BindBufferRange)                                     \
+  X(BINDFRAMEBUFFER, BindFramebuffer) X(BINDSAMPLER, BindSampler) X(BINDTEXTURE, BindTexture)               \
+  X(BINDVERTEXARRAY, BindVertexArray) X(BLENDEQUATIONSEPARATE, BlendEquationSeparate)                       \
+  X(BLENDFUNCSEPARATE, BlendFuncSeparate) X(BUFFERDATA, BufferData) X(BUFFERSUBDATA, BufferSubData)         \
+  X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) X(CLEARBUFFERFV, ClearBufferfv)                         \
+  X(CLEARBUFFERUIV, ClearBufferuiv) X(COLORMASK, ColorMask) X(COLORMASKI, ColorMaski)                       \
+  X(COMPILESHADER, CompileShader) X(CREATEPROGRAM, CreateProgram) X(CREATESHADER, CreateShader)             \
+  X(CULLFACE, CullFace) X(DELETEBUFFERS, DeleteBuffers) X(DELETEFRAMEBUFFERS, DeleteFramebuffers)           \
+  X(DELETEPROGRAM, DeleteProgram) X(DELETESHADER, DeleteShader) X(DELETETEXTURES, DeleteTextures)           \
+  X(DELETEVERTEXARRAYS, DeleteVertexArrays) X(DEPTHFUNC, DepthFunc) X(DEPTHMASK, DepthMask)                 \
+  X(DEPTHRANGE, DepthRange) X(DISABLE, Disable) X(DISABLEI, Disablei) X(DRAWARRAYS, DrawArrays)             \
+  X(DRAWBUFFERS, DrawBuffers) X(DRAWELEMENTS, DrawElements) X(ENABLE, Enable) X(ENABLEI, Enablei)           \
+  X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray) X(ENDTRANSFORMFEEDBACK, EndTransformFeedback)         \
+  X(FINISH, Finish) X(FRAMEBUFFERTEXTURE2D, FramebufferTexture2D) X(FRONTFACE, FrontFace)                   \
+  X(GENBUFFERS, GenBuffers) X(GENFRAMEBUFFERS, GenFramebuffers) X(GENTEXTURES, GenTextures)                 \
+  X(GENVERTEXARRAYS, GenVertexArrays) X(GETBOOLEANI_V, GetBooleani_v) X(GETBOOLEANV, GetBooleanv)           \
+  X(GETDOUBLEV, GetDoublev) X(GETERROR, GetError) X(GETFLOATV, GetFloatv)                                   \
+  X(GETFRAMEBUFFERATTACHMENTPARAMETERIV, GetFramebufferAttachmentParameteriv)                               \
+  X(GETINTEGER64I_V, GetInteger64i_v) X(GETINTEGERI_V, GetIntegeri_v) X(GETINTEGERV, GetIntegerv)           \
+  X(GETPROGRAMINFOLOG, GetProgramInfoLog) X(GETPROGRAMIV, GetProgramiv)                                     \
+  X(GETSHADERINFOLOG, GetShaderInfoLog) X(GETSHADERIV, GetShaderiv) X(GETSTRING, GetString)                 \
+  X(GETSTRINGI, GetStringi) X(GETTEXPARAMETERIV, GetTexParameteriv)                                         \
+  X(GETUNIFORMLOCATION, GetUniformLocation) X(ISENABLED, IsEnabled) X(ISENABLEDI, IsEnabledi)               \
+  X(LINKPROGRAM, LinkProgram) X(PIXELSTOREI, PixelStorei) X(POLYGONMODE, PolygonMode)                       \
+  X(READBUFFER, ReadBuffer) X(READPIXELS, ReadPixels) X(SCISSOR, Scissor) X(SHADERSOURCE, ShaderSource)     \
+  X(STENCILMASK, StencilMask) X(TEXBUFFER, TexBuffer) X(TEXIMAGE2D, TexImage2D)                             \
+  X(TEXPARAMETERI, TexParameteri) X(TRANSFORMFEEDBACKVARYINGS, TransformFeedbackVaryings)                   \
+  X(UNIFORM1F, Uniform1f) X(UNIFORM1I, Uniform1i) X(UNIFORM1UI, Uniform1ui) X(UNIFORM2F, Uniform2f)         \
+  X(UNIFORM3I, Uniform3i) X(UNIFORM3F, Uniform3f) X(UNIFORM4F, Uniform4f)                                   \
+  X(UNIFORMMATRIX3FV, UniformMatrix3fv) X(USEPROGRAM, UseProgram)                                           \
+  X(VERTEXATTRIBIPOINTER, VertexAttribIPointer) X(VERTEXATTRIBPOINTER, VertexAttribPointer)                 \
+  X(VIEWPORT, Viewport)
+// clang-format on
 
 struct Gl {
 #define DUPIN_GL_MEMBER(type, name) PFNGL##type##PROC name = nullptr;

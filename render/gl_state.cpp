@@ -3,7 +3,7 @@
 namespace dupin {
 namespace {
 
-// The first must stay the depth test.
+// In the order that GlStateGuard::kDepthTest, kScissor and kSrgb say.
 constexpr GLenum kCapabilityNames[] = {GL_DEPTH_TEST,         GL_SCISSOR_TEST,
                                        GL_CULL_FACE,          GL_STENCIL_TEST,
                                        GL_FRAMEBUFFER_SRGB,   GL_POLYGON_OFFSET_FILL,
@@ -102,6 +102,17 @@ void GlStateGuard::neutral() const {
     gl_.PixelStorei(store, store == GL_PACK_ALIGNMENT || store == GL_UNPACK_ALIGNMENT ? 4 : 0);
   for (int i = 0; i < kUnits; ++i) gl_.BindSampler(static_cast<GLuint>(i), 0);
   gl_.ActiveTexture(GL_TEXTURE0);
+}
+
+void GlStateGuard::use_host_output() const {
+  for (const int i : {kDepthTest, kScissor, kSrgb})
+    (enabled_[static_cast<std::size_t>(i)] ? gl_.Enable : gl_.Disable)(kCapabilityNames[i]);
+  gl_.DepthFunc(symbol(depth_func_));
+  gl_.DepthMask(depth_mask_);
+  for (std::size_t i = 0; i < color_mask_.size(); ++i) {
+    const std::array<GLboolean, 4> mask = i == 0 ? color_mask_[0] : std::array<GLboolean, 4>{};
+    gl_.ColorMaski(static_cast<GLuint>(i), mask[0], mask[1], mask[2], mask[3]);
+  }
 }
 
 void GlStateGuard::put_back_bindings() const {

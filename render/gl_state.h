@@ -21,11 +21,11 @@ class GlStateGuard {
 
   /// Of the host's, as they were.
   GLuint draw_framebuffer() const { return static_cast<GLuint>(draw_framebuffer_); }
-  bool depth_test() const { return enabled_[0]; }
-  GLenum depth_func() const { return static_cast<GLenum>(depth_func_); }
-  GLboolean depth_mask() const { return depth_mask_; }
   std::array<double, 2> depth_range() const { return depth_range_; }
   bool clip_zero_to_one() const { return clip_depth_ == GL_ZERO_TO_ONE; }
+  bool srgb_conversion() const { return enabled_[kSrgb]; }
+  /// Depth test, scissor, color mask and sRGB conversion as the host has them, and writing to its first color buffer alone.
+  void use_host_output() const;
 
  private:
   struct Unit {
@@ -45,6 +45,7 @@ class GlStateGuard {
   std::array<Unit, kUnits> units_;
   static constexpr int kPixelStores = 16;
   std::array<GLint, kPixelStores> pixel_stores_{};
+  static constexpr int kDepthTest = 0, kScissor = 1, kSrgb = 4;
   static constexpr int kCapabilities = 23;
   std::array<bool, kCapabilities> enabled_{};
   std::vector<bool> blend_;  ///< per draw buffer

@@ -34,13 +34,13 @@ std::string text_of(const Gl& gl, GLenum what) {
   return text ? text : "";
 }
 
+}  // namespace
+
 Status check(const DrawOptions& options) {
   if (options.samples < 1 || options.samples > 256)
     return {StatusCode::invalid_argument, "a pixel can have 1 to 256 samples"};
   return {};
 }
-
-}  // namespace
 
 Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Renderer::~Renderer() = default;

@@ -14,6 +14,11 @@
 
 namespace dupin {
 
+class GlStateGuard;
+
+/// What is out of range in a caller's options.
+Status check(const DrawOptions& options);
+
 /// Texture units; every program that has a sampler of one of these names reads it there.
 enum Unit {
   kHeapUnit,
@@ -58,6 +63,8 @@ class Renderer::Impl {
   Status prepare_targets(int width, int height, unsigned pictures);
   Status run(const Pass& pass);
   Status draw_samples(const Scene::Impl& scene, const ViewRays& view, const DrawOptions& options);
+  /// Puts what the last draw_samples drew into the host's framebuffer.
+  Status composite(const HostView& host, const ViewRays& view, const DrawOptions& options, const GlStateGuard& state);
   /// What the last draw_samples drew.
   void read_frame(const ViewRays& view, const DrawOptions& options, Frame& frame);
 

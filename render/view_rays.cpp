@@ -46,7 +46,7 @@ Result<ViewRays> view_rays(const std::array<double, 16>& v, const std::array<dou
   view.width = width;
   view.height = height;
   const double w = view.perspective ? -p[11] : p[15];
-  if (!(w > 0) || p[0] == 0 || p[5] == 0 || p[1] != 0 || p[4] != 0)
+  if (!(w > 0) || p[0] == 0 || p[5] == 0 || p[1] != 0 || p[4] != 0 || (view.perspective && p[15] != 0))
     return {StatusCode::invalid_argument,
             "the projection is neither a frustum nor a box along the view axis"};
   // Perspective: ndc·depth·w = p0·x − p8·depth (depth = −z); parallel: ndc·w = p0·x + p12, x in the host's
