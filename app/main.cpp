@@ -18,7 +18,8 @@ using dupin::app::kWrongUsage;
 std::string usage_error(const CLI::App& app, int argc, char** argv, const CLI::ParseError& error) {
   const std::string first = argc > 1 ? argv[1] : "";
   if (first.empty()) return "no command; see dupin --help";
-  if (first[0] != '-' && !app.get_subcommand_no_throw(first))
+  const auto commands = app.get_subcommands([&](const CLI::App* command) { return command->get_name() == first; });
+  if (first[0] != '-' && commands.empty())
     return "'" + first + "' is no command of this version (info, render and compare are); see dupin --help";
   const bool named = first[0] != '-';
   return std::string(error.what()) + "; see dupin " + (named ? first + " " : "") + "--help";

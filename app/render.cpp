@@ -174,8 +174,9 @@ Status RenderJob::draw() {
 
 Status RenderJob::write() {
   Stopwatch watch;
-  const Status status = options_.exr() ? write_exr(picture_.working_path(), frame_, camera_)
-                                       : write_png(picture_.working_path(), frame_);
+  const Image image = to_image(frame_);
+  const Status status = options_.exr() ? write_exr(picture_.working_path(), image)
+                                       : write_png(picture_.working_path(), to_image8(image));
   if (!status.ok()) return {status.code, options_.output + ": cannot write"};
   stats_.times.write = watch.lap();
   stats_.times.total = session_.limits().elapsed();

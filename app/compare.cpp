@@ -1,0 +1,127 @@
+// dupin compare: how much two pictures differ.
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "../render/image.h"
+#include "../render/metrics.h"
+#include "commands.h"
+#include "exit_code.h"
+#include "output_file.h"
+#include "session.h"
+
+namespace dupin::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct PictureCompareOptions {
+  CommonOptions common;
+  CompareOptions compare;
+  std::string a, b, diff;
+  bool json = false;
+};
+
+/// JSON has no infinity: equal pictures have a PSNR of null.
+Json finite(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
+Json quantiles(const Distribution& d) {
+  return {{"count", d.count}, {"mean", d.mean}, {"p50", d.p50}, {"p90", d.p90}, {"p99", d.p99}, {"p999", d.p999}, {"max", d.max}};
+}
+
+Json to_json(const GeometryMetrics& g) {
+  return {{"interior_px", g.interior},
+          {"holes_px", g.holes},
+          {"holes_ppm", g.interior ? 1e6 * double(g.holes) / double(g.interior) : 0.0},
+          {"extra_px", g.extra},
+          {"opposed_normals_px", g.opposed_normals},
+          {"depth_px", g.depth_px.count ? quantiles(g.depth_px) : Json(nullptr)},
+          {"normal_degrees", g.normal_degrees.count ? quantiles(g.normal_degrees) : Json(nullptr)}};
+}
+
+Json to_json(const PictureDifference& d) {
+  Json json{{"width", d.width}, {"height", d.height}};
+  if (d.color) {
+    json["rmse"] = d.color->rmse;
+    json["psnr"] = finite(d.color->psnr);
+    json["ssim"] = d.color->ssim;
+    json["flip"] = d.color->flip;
+  }
+  json["covered_px"] = {d.covered_a, d.covered_b};
+  json["silhouette_px"] = d.silhouette;
+  if (d.geometry) json["geometry"] = to_json(*d.geometry);
+  return json;
+}
+
+void print(const char* name, const char* unit, const Distribution& d) {
+  if (d.count)
+    std::printf("%-12s half below %.4g, 99 %% below %.4g, 99.9 %% below %.4g, largest %.4g %s\n", name, d.p50, d.p99, d.p999,
+                d.max, unit);
+}
+
+void print_table(const PictureDifference& d) {
+  if (d.color) {
+    std::printf("RMSE         %.4f of 255\nPSNR         ", d.color->rmse);
+    std::printf(std::isfinite(d.color->psnr) ? "%.2f dB\n" : "infinite: the pictures are the same\n", d.color->psnr);
+    std::printf("SSIM         %.6f\nFLIP         %.6f\n", d.color->ssim, d.color->flip);
+  }
+  std::printf("silhouette   %llu pixels differ (%llu and %llu covered)\n", static_cast<unsigned long long>(d.silhouette),
+              static_cast<unsigned long long>(d.covered_a), static_cast<unsigned long long>(d.covered_b));
+  if (!d.geometry) return;
+  const GeometryMetrics& g = *d.geometry;
+  std::printf("interior     %llu pixels, %llu holes, %llu drawn outside, %llu normals opposed\n",
+              static_cast<unsigned long long>(g.interior), static_cast<unsigned long long>(g.holes),
+              static_cast<unsigned long long>(g.extra), static_cast<unsigned long long>(g.opposed_normals));
+  print("depth", "pixels", g.depth_px);
+  print("normals", "degrees", g.normal_degrees);
+}
+
+Status write_diff(OutputFile& output, const Image& a, const Image& b, const CompareOptions& options) {
+  const Result<Image8> picture = difference_picture(a, b, options);
+  if (!picture.ok()) return picture.status();
+  if (const Status status = write_png(output.working_path(), *picture); !status.ok()) return status;
+  return output.commit();
+}
+
+int run(const PictureCompareOptions& options) {
+  Session session(options.common);
+  OutputFile diff;
+  if (!options.diff.empty())
+    if (const Status status = diff.open(options.diff); !status.ok()) return session.fail(status);
+  const Result<Image> a = read_image(options.a);
+  if (!a.ok()) return session.fail(a.status());
+  const Result<Image> b = read_image(options.b);
+  if (!b.ok()) return session.fail(b.status());
+  const Result<PictureDifference> difference = compare(*a, *b, options.compare);
+  if (!difference.ok()) return session.fail(difference.status());
+  if (!options.diff.empty())
+    if (const Status status = write_diff(diff, *a, *b, options.compare); !status.ok()) return session.fail(status);
+  if (options.json) std::printf("%s\n", to_json(*difference).dump(2).c_str());
+  else print_table(*difference);
+  if (std::fflush(stdout) != 0) return session.fail({StatusCode::cannot_write, "standard output: cannot write"});
+  return kDone;
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app, Command& chosen) {
+  const auto options = std::make_shared<PictureCompareOptions>();
+  CLI::App* command = app.add_subcommand("compare", "Measure how much two pictures differ");
+  command->add_option("A", options->a, "The reference: PNG or EXR")->required();
+  command->add_option("B", options->b, "What is compared with it, of the same size")->required();
+  command->add_flag("--json", options->json, "As JSON, for programs");
+  command->add_option("--diff", options->diff, "Write a picture of where they differ")->type_name("OUT.png");
+  command
+      ->add_option("--fov", options->compare.fov_degrees,
+                   "Vertical angle of view, for the size of a pixel where neither picture tells it")
+      ->check(CLI::Range(1e-6, 179.0))
+      ->type_name("DEG")
+      ->capture_default_str();
+  add_common_options(*command, options->common);
+  command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+}
+
+}  // namespace dupin::app
