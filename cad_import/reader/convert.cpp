@@ -1,10 +1,8 @@
 #include "convert.h"
 
-#include <BRep_Builder.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_MapOfShape.hxx>
 #include <TopoDS.hxx>
-#include <TopoDS_Compound.hxx>
 #include <TopoDS_Iterator.hxx>
 
 #include <map>
@@ -30,14 +28,6 @@ std::vector<Piece> pieces_of(const TopoDS_Shape& shape) {
   const TopExp_Explorer loose(shape, TopAbs_FACE, TopAbs_SOLID);
   if (loose.More()) pieces.push_back({shape.Located(TopLoc_Location()), shape.Location(), true});
   return pieces;
-}
-
-TopoDS_Shape together(const std::vector<TopoDS_Face>& faces) {
-  TopoDS_Compound all;
-  BRep_Builder builder;
-  builder.MakeCompound(all);
-  for (const TopoDS_Face& face : faces) builder.Add(all, face);
-  return all;
 }
 
 bool same_look(const PartSource& a, const PartSource& b) {
@@ -72,7 +62,6 @@ class Conversion {
     std::uint32_t part = 0;
   };
   struct Built {
-    TopoDS_Shape shape;
     std::vector<TopoDS_Face> faces;
     std::vector<SkippedFace> skipped;
     std::uint32_t instances = 0;
@@ -103,8 +92,7 @@ class Conversion {
     for (std::string& n : built.notes)
       model_.notes.push_back((source.name.empty() ? "part " + std::to_string(index + 1) : source.name) + ": " + n);
     model_.parts.push_back(std::move(built.part));
-    built_.push_back({piece.loose ? together(built.shapes) : piece.shape, std::move(built.shapes),
-                      std::move(built.skipped), 0});
+    built_.push_back({std::move(built.shapes), std::move(built.skipped), 0});
     known.push_back({std::move(source), index});
     return index;
   }
@@ -145,11 +133,11 @@ class Conversion {
 
   void add_meshes() {
     stage_("tessellating", 0);
-    std::vector<TopoDS_Shape> shapes;
-    for (const Built& built : built_) shapes.push_back(built.shape);
+    std::vector<TopoDS_Face> faces;
+    for (const Built& built : built_) faces.insert(faces.end(), built.faces.begin(), built.faces.end());
     const double deflection = mesh_.deflection * bounding_box(model_).diagonal();
     if (!(deflection > 0)) return;
-    model_.mesh_seconds = mesh_shapes(shapes, deflection, mesh_.angle_radians);
+    model_.mesh_seconds = mesh_faces(faces, deflection, mesh_.angle_radians);
     for (std::size_t i = 0; i < built_.size(); ++i) take_mesh(built_[i].faces, model_.parts[i]);
   }
 

@@ -10,6 +10,7 @@ constexpr int kGrid = 16;           // points a side of the search for a project
 constexpr int kNewtonSteps = 30;
 constexpr int kFirstPieces = 8;
 constexpr int kMaxDepth = 10;       // halvings of a first piece
+constexpr std::size_t kMaxPieces = 600;
 constexpr int kChecksPerPiece = 3;  // inside each piece
 
 template <class V>
@@ -42,22 +43,35 @@ BsplineOf<V> to_spline(const std::vector<Node<V>>& nodes) {
   return spline;
 }
 
-// Halves [a, b] until `error` of the cubic is within the tolerance at the checked parameters; appends b.
 template <class V>
-bool refine(const Node<V>& a, const Node<V>& b, int depth, double tolerance,
-            const std::function<Node<V>(double, const Node<V>&)>& node_at,
-            const std::function<double(double, const V&)>& error, std::vector<Node<V>>& nodes) {
-  double worst = 0;
-  for (int i = 1; i <= kChecksPerPiece; ++i) {
-    const double t = a.t + (b.t - a.t) * i / (kChecksPerPiece + 1);
-    worst = std::max(worst, error(t, hermite(a, b, t)));
+struct Refinement {
+  double tolerance = 0;
+  std::function<Node<V>(double, const Node<V>&)> node_at;  ///< the exact node at t, given the one before it
+  std::function<double(double, const V&)> error;           ///< how far a point of the cubic is off at t
+  std::vector<Node<V>> nodes;
+
+  // Halves [a, b] until the cubic is within the tolerance where it is checked, or no more halving helps; appends b.
+  void run(const Node<V>& a, const Node<V>& b, int depth) {
+    double worst = 0;
+    for (int i = 1; i <= kChecksPerPiece; ++i) {
+      const double t = a.t + (b.t - a.t) * i / (kChecksPerPiece + 1);
+      worst = std::max(worst, error(t, hermite(a, b, t)));
+    }
+    if (worst <= tolerance || depth == 0 || nodes.size() >= kMaxPieces || !std::isfinite(worst)) {
+      nodes.push_back(b);
+      return;
+    }
+    const Node<V> middle = node_at((a.t + b.t) / 2, a);
+    run(a, middle, depth - 1);
+    run(middle, b, depth - 1);
   }
-  if (worst <= tolerance) return nodes.push_back(b), true;
-  if (depth == 0 || !std::isfinite(worst)) return nodes.push_back(b), false;
-  const Node<V> middle = node_at((a.t + b.t) / 2, a);
-  const bool left = refine(a, middle, depth - 1, tolerance, node_at, error, nodes);
-  return refine(middle, b, depth - 1, tolerance, node_at, error, nodes) && left;
-}
+
+  bool finite() const {
+    return std::all_of(nodes.begin(), nodes.end(), [](const Node<V>& n) {
+      return std::isfinite(dot(n.point, n.point)) && std::isfinite(dot(n.tangent, n.tangent));
+    });
+  }
+};
 
 std::vector<double> first_parameters(std::vector<double> stops, double t0, double t1) {
   stops.insert(stops.begin(), t0);
@@ -83,6 +97,11 @@ Vec2 tangent_parameters(const SurfaceJet& s, const Vec3& w) {
   return {(c * x - f * y) / det, (a * y - f * x) / det};
 }
 
+// At the edge of an open domain, with the way down leading out of it, only the other parameter can move.
+bool stuck(double q, double lo, double hi, double period, double gradient) {
+  return period == 0 && ((q <= lo && gradient > 0) || (q >= hi && gradient < 0));
+}
+
 Vec2 clamp_to(const Surface& surface, const Box2& domain, Vec2 q) {
   if (period_u(surface) == 0) q.x = std::clamp(q.x, domain.lo.x, domain.hi.x);
   if (period_v(surface) == 0) q.y = std::clamp(q.y, domain.lo.y, domain.hi.y);
@@ -96,11 +115,16 @@ Vec2 newton(const Surface& surface, const Box2& domain, const Vec3& p, Vec2 q) {
   double best = distance(s.p, p);
   for (int i = 0; i < kNewtonSteps; ++i) {
     const Vec3 r = s.p - p;
-    const double gu = dot(s.pu, r), gv = dot(s.pv, r);
+    double gu = dot(s.pu, r), gv = dot(s.pv, r);
     double a = dot(s.pu, s.pu), b = dot(s.pu, s.pv), c = dot(s.pv, s.pv);
     const double scale = a + c;
     const double full_a = a + dot(s.puu, r), full_b = b + dot(s.puv, r), full_c = c + dot(s.pvv, r);
     if (full_a > 0 && full_a * full_c - full_b * full_b > 1e-8 * a * c) a = full_a, b = full_b, c = full_c;
+    const bool u_stuck = stuck(q.x, domain.lo.x, domain.hi.x, period_u(surface), gu);
+    const bool v_stuck = stuck(q.y, domain.lo.y, domain.hi.y, period_v(surface), gv);
+    if (u_stuck && v_stuck) break;
+    if (u_stuck) gu = 0, b = 0, a = scale;
+    if (v_stuck) gv = 0, b = 0, c = scale;
     a += damping * scale, c += damping * scale;
     const double det = a * c - b * b;
     if (!(det > 0)) {
@@ -167,21 +191,17 @@ std::optional<Curve2> fit_pcurve(const Surface& surface, const Box2& domain, con
   double own_distance = 0;
   for (const Node<Vec2>& n : coarse)
     own_distance = std::max(own_distance, distance(point_at(surface, n.point.x, n.point.y), point_at(curve, n.t)));
-  const std::function<double(double, const Vec2&)> error = [&](double t, const Vec2& q) {
-    return distance(point_at(surface, q.x, q.y), point_at(curve, t));
-  };
-  const std::function<Node<Vec2>(double, const Node<Vec2>&)> node_at = [&](double t, const Node<Vec2>& before) {
+  Refinement<Vec2> fit;
+  fit.tolerance = own_distance + tolerance;
+  fit.error = [&](double t, const Vec2& q) { return distance(point_at(surface, q.x, q.y), point_at(curve, t)); };
+  fit.node_at = [&](double t, const Node<Vec2>& before) {
     const Vec2 guess = clamp_to(surface, domain, before.point + before.tangent * (t - before.t));
     return node_near(t, &guess);
   };
-  std::vector<Node<Vec2>> nodes{coarse.front()};
-  bool reached = true;
-  for (std::size_t i = 0; i + 1 < coarse.size(); ++i)
-    reached = refine(coarse[i], coarse[i + 1], kMaxDepth, own_distance + tolerance, node_at, error, nodes) && reached;
-  for (const Node<Vec2>& n : nodes)
-    if (!std::isfinite(n.point.x + n.point.y + n.tangent.x + n.tangent.y)) return std::nullopt;
-  if (!reached) return std::nullopt;
-  return Curve2{to_spline(nodes)};
+  fit.nodes.push_back(coarse.front());
+  for (std::size_t i = 0; i + 1 < coarse.size(); ++i) fit.run(coarse[i], coarse[i + 1], kMaxDepth);
+  if (!fit.finite()) return std::nullopt;
+  return Curve2{to_spline(fit.nodes)};
 }
 
 std::optional<Curve3> fit_curve(const Surface& surface, const Curve2& pcurve, double t0, double t1,
@@ -191,23 +211,19 @@ std::optional<Curve3> fit_curve(const Surface& surface, const Curve2& pcurve, do
     const SurfaceJet s = evaluate(surface, q[0].x, q[0].y, 1);
     return Node<Vec3>{t, s.p, s.pu * q[1].x + s.pv * q[1].y};
   };
-  const std::function<Node<Vec3>(double, const Node<Vec3>&)> node_at = [&](double t, const Node<Vec3>&) {
-    return exact(t);
-  };
-  const std::function<double(double, const Vec3&)> error = [&](double t, const Vec3& p) {
+  Refinement<Vec3> fit;
+  fit.tolerance = tolerance;
+  fit.node_at = [&](double t, const Node<Vec3>&) { return exact(t); };
+  fit.error = [&](double t, const Vec3& p) {
     const Vec2 q = point_at(pcurve, t);
     return distance(point_at(surface, q.x, q.y), p);
   };
   const std::vector<double> parameters = first_parameters(breaks(pcurve, t0, t1, 2), t0, t1);
-  std::vector<Node<Vec3>> nodes{exact(t0)};
-  bool reached = true;
+  fit.nodes.push_back(exact(t0));
   for (std::size_t i = 0; i + 1 < parameters.size(); ++i)
-    reached = refine(exact(parameters[i]), exact(parameters[i + 1]), kMaxDepth, tolerance, node_at, error, nodes) &&
-              reached;
-  if (!reached) return std::nullopt;
-  for (const Node<Vec3>& n : nodes)
-    if (!is_finite(n.point) || !is_finite(n.tangent)) return std::nullopt;
-  return Curve3{to_spline(nodes)};
+    fit.run(exact(parameters[i]), exact(parameters[i + 1]), kMaxDepth);
+  if (!fit.finite()) return std::nullopt;
+  return Curve3{to_spline(fit.nodes)};
 }
 
 }  // namespace dupin::reader

@@ -124,18 +124,23 @@ class FaceBuilder {
     if (!result_.skip) result_.skip = reason;
   }
 
-  // The outer loop, which encloses most, first.
+  // The outer loop, which encloses most, first and counter-clockwise.
   void order_loops() {
-    std::vector<std::pair<double, std::size_t>> areas;
-    for (std::size_t i = 0; i < loops_.size(); ++i) areas.emplace_back(std::abs(signed_area(loops_[i])), i);
-    if (!areas.empty()) std::iter_swap(areas.begin(), std::max_element(areas.begin(), areas.end(), [](auto& a, auto& b) {
-      return a.first < b.first;
-    }));
-    for (const auto& [area, i] : areas) {
+    std::vector<double> areas;
+    for (const auto& loop : loops_) areas.push_back(signed_area(loop));
+    if (!areas.empty()) {
+      const auto less = [](double a, double b) { return std::abs(a) < std::abs(b); };
+      const auto outer = std::max_element(areas.begin(), areas.end(), less) - areas.begin();
+      std::swap(loops_[0], loops_[static_cast<std::size_t>(outer)]);
+      std::swap(areas[0], areas[static_cast<std::size_t>(outer)]);
+      if (areas[0] < 0) turn_outer_loop();
+    }
+    for (auto& uses : loops_) {
       Loop loop;
-      for (EdgeUse& use : loops_[i]) {
-        result_.face.uv_box.add(bounds(use.trim.pcurve, use.t0, use.t1).lo);
-        result_.face.uv_box.add(bounds(use.trim.pcurve, use.t0, use.t1).hi);
+      for (EdgeUse& use : uses) {
+        const Box2 box = bounds(use.trim.pcurve, use.t0, use.t1);
+        result_.face.uv_box.add(box.lo);
+        result_.face.uv_box.add(box.hi);
         loop.push_back(std::move(use.trim));
       }
       result_.face.loops.push_back(std::move(loop));
@@ -145,6 +150,17 @@ class FaceBuilder {
       char text[80];
       std::snprintf(text, sizeof text, "its boundary does not close, by %.3g", result_.largest_gap);
       result_.repair = text;
+    }
+  }
+
+  // On an open surface a clockwise outer loop is a slip; on one that closes on itself it may be a hole whose natural
+  // boundary was left out.
+  void turn_outer_loop() {
+    if (loops_.size() == 1 && period_u(surface_) == 0 && period_v(surface_) == 0) {
+      std::reverse(loops_[0].begin(), loops_[0].end());
+      for (EdgeUse& use : loops_[0]) use.trim.reversed = !use.trim.reversed;
+    } else {
+      result_.repair = "its boundary runs the wrong way round";
     }
   }
 

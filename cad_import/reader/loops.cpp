@@ -25,15 +25,40 @@ Metric metric_of(const Surface& surface, const std::vector<EdgeUse>& uses) {
   return m;
 }
 
+Vec2 extent_of(const std::vector<EdgeUse>& uses) {
+  Box2 box;
+  for (const EdgeUse& use : uses)
+    for (const double t : {use.t0, (use.t0 + use.t1) / 2, use.t1}) box.add(point_at(use.trim.pcurve, t));
+  return box.size();
+}
+
+// Part of the loop's own extent that a gap may have without being filled in: slivers are thinner than any tolerance.
+constexpr double kGapOfExtent = 0.002;
+
 Vec2 whole_periods(Vec2 d, double period_u, double period_v) {
   return {period_u > 0 ? std::round(d.x / period_u) * period_u : 0,
           period_v > 0 ? std::round(d.y / period_v) * period_v : 0};
 }
 
+// The width of a domain whose opposite sides meet in space without the surface being periodic; 0 if they do not.
+double closure(const Surface& surface, bool in_u, double tolerance) {
+  const Box2 box = domain(surface);
+  const double lo = in_u ? box.lo.x : box.lo.y, hi = in_u ? box.hi.x : box.hi.y;
+  const double across_lo = in_u ? box.lo.y : box.lo.x, across_hi = in_u ? box.hi.y : box.hi.x;
+  if (!(std::abs(lo) < 1e50 && std::abs(hi) < 1e50 && std::abs(across_lo) < 1e50 && std::abs(across_hi) < 1e50)) return 0;
+  for (int i = 0; i <= 8; ++i) {
+    const double s = across_lo + (across_hi - across_lo) * i / 8;
+    const Vec3 a = in_u ? point_at(surface, lo, s) : point_at(surface, s, lo);
+    const Vec3 b = in_u ? point_at(surface, hi, s) : point_at(surface, s, hi);
+    if (!(distance(a, b) <= tolerance)) return 0;
+  }
+  return hi - lo;
+}
+
 class Assembly {
  public:
   Assembly(const Surface& surface, std::vector<EdgeUse> uses, double tolerance)
-      : surface_(surface), left_(std::move(uses)), tolerance_(tolerance), metric_(metric_of(surface, left_)),
+      : surface_(surface), left_(std::move(uses)), tolerance_(tolerance), metric_(metric_of(surface, left_)), extent_(extent_of(left_)),
         period_u_(period_u(surface)), period_v_(period_v(surface)) {}
 
   WireLoops run() {
@@ -103,8 +128,22 @@ class Assembly {
     const Vec2 end = loop.back().end(), d = use.start() - end;
     const Vec2 turns = whole_periods(d, period_u_, period_v_);
     if (turns.x != 0 || turns.y != 0) translate(use.trim.pcurve, -turns);
-    bridge(loop, d - turns, use.start());
+    if (metric_(d - turns) > 10 * tolerance_) move_to_other_side(use, end);
+    bridge(loop, use.start() - end, use.start());
     loop.push_back(std::move(use));
+  }
+
+  // An edge along the line where a surface closes has its pcurve on either side of the domain.
+  void move_to_other_side(EdgeUse& use, Vec2 end) const {
+    const Box2 along = bounds(use.trim.pcurve, use.t0, use.t1);
+    const Vec2 d = use.start() - end;
+    for (const bool in_u : {true, false}) {
+      const double gap = in_u ? d.x : d.y, thickness = in_u ? along.size().x : along.size().y;
+      const double width = closure(surface_, in_u, 10 * tolerance_);
+      if (width == 0 || std::abs(std::abs(gap) - width) > 0.02 * width || thickness > 0.02 * width) continue;
+      const double by = gap > 0 ? -width : width;
+      translate(use.trim.pcurve, in_u ? Vec2{by, 0} : Vec2{0, by});
+    }
   }
 
   void close(std::vector<EdgeUse>& loop) {
@@ -116,10 +155,12 @@ class Assembly {
 
   // Joins the loop's end with `to`, which lies `d` further on, where they differ.
   void bridge(std::vector<EdgeUse>& loop, Vec2 d, Vec2 to) {
-    if (metric_(d) <= tolerance_) {
+    if (metric_(d) <= tolerance_ && std::abs(d.x) <= kGapOfExtent * extent_.x &&
+        std::abs(d.y) <= kGapOfExtent * extent_.y) {
       result_.gap = std::max(result_.gap, metric_(d));
       return;
     }
+    if (d == Vec2{}) return;
     const Vec2 from = loop.back().end();
     const Vec3 p = point_at(surface_, from.x, from.y);
     double off = 0;  // nothing at a pole: a collapsed side stays at one point all the way
@@ -141,6 +182,7 @@ class Assembly {
   std::vector<EdgeUse> left_;
   double tolerance_;
   Metric metric_;
+  Vec2 extent_;
   double period_u_, period_v_;
   WireLoops result_;
 };

@@ -64,11 +64,11 @@ std::array<float, 3> to_float(const Vec3& v) {
 
 }  // namespace
 
-double mesh_shapes(const std::vector<TopoDS_Shape>& shapes, double deflection, double angle_radians) {
+double mesh_faces(const std::vector<TopoDS_Face>& faces, double deflection, double angle_radians) {
   TopoDS_Compound all;
   BRep_Builder builder;
   builder.MakeCompound(all);
-  for (const TopoDS_Shape& shape : shapes) builder.Add(all, shape);
+  for (const TopoDS_Face& face : faces) builder.Add(all, face);
   const auto start = std::chrono::steady_clock::now();
   const BRepMesh_IncrementalMesh mesher(all, deflection, false, angle_radians, true);
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -3,7 +3,6 @@
 #define DUPIN_CAD_IMPORT_READER_MESH_H
 
 #include <TopoDS_Face.hxx>
-#include <TopoDS_Shape.hxx>
 
 #include <vector>
 
@@ -16,8 +15,8 @@ struct MeshOptions {
   double angle_radians = 0.5;
 };
 
-/// Meshes the shapes in parallel; seconds that BRepMesh took.
-double mesh_shapes(const std::vector<TopoDS_Shape>& shapes, double deflection, double angle_radians);
+/// Meshes the faces in parallel, common edges alike; seconds that BRepMesh took.
+double mesh_faces(const std::vector<TopoDS_Face>& faces, double deflection, double angle_radians);
 
 /// Collects the triangles of the part's faces, with the surfaces' own normals at the vertices.
 void take_mesh(const std::vector<TopoDS_Face>& faces, Part& part);

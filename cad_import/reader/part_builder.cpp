@@ -14,6 +14,8 @@
 #include "geometry.h"
 #include "loops.h"
 #include "part_checks.h"
+#include "repair.h"
+#include "sanitize.h"
 #include "search_domain.h"
 #include "topology.h"
 
@@ -56,8 +58,10 @@ class PartBuilder {
     collect();
     convert_edges();
     complete_edges();
-    build_faces();
+    build_faces(0);
+    repair_faces();
     take_faces();
+    drop_invalid();
     drop_unused();
     set_part_box(built_.part);
     mark_smooth_edges(built_.part);
@@ -67,28 +71,30 @@ class PartBuilder {
 
  private:
   struct Pending {
+    std::size_t source = 0;
     FaceTask task;
     std::optional<std::uint32_t> surface;
     FaceResult result;
+    bool replaced = false;  ///< by others of the same source
   };
 
   void collect() {
-    SurfaceTable table;
-    for (const FaceSource& face : source_.faces) {
-      Pending p;
-      p.task.shape = face.face;
-      p.surface = table.add(face.face, built_.part.surfaces);
-      p.task.wires = wires_of(face.face, topology_);
-      pending_.push_back(std::move(p));
-    }
+    for (std::size_t i = 0; i < source_.faces.size(); ++i) add_pending(i, source_.faces[i].face);
+  }
+
+  void add_pending(std::size_t source, const TopoDS_Face& face) {
+    Pending p;
+    p.source = source;
+    p.task.shape = face;
+    p.surface = surfaces_.add(face, built_.part.surfaces);
+    p.task.wires = wires_of(face, topology_);
+    pending_.push_back(std::move(p));
   }
 
   void convert_edges() {
-    std::vector<Edge>& edges = built_.part.edges;
-    edges.resize(topology_.edge_count());
-    parallel_for(edges.size(), [&](std::size_t i) { edges[i] = to_edge(topology_.edge(i)); }, 64);
+    convert_new_edges();
     Box3 box;
-    for (const Edge& edge : edges)
+    for (const Edge& edge : built_.part.edges)
       if (edge.curve)
         for (int i = 0; i <= 8; ++i) {
           const Vec3 p = point_at(*edge.curve, edge.t0 + (edge.t1 - edge.t0) * i / 8);
@@ -96,6 +102,14 @@ class PartBuilder {
         }
     size_ = box.diagonal();
     if (size_ == 0) size_ = 1;
+  }
+
+  void convert_new_edges() {
+    std::vector<Edge>& edges = built_.part.edges;
+    const std::size_t first = edges.size();
+    edges.resize(topology_.edge_count());
+    parallel_for(
+        edges.size() - first, [&](std::size_t i) { edges[first + i] = to_edge(topology_.edge(first + i)); }, 64);
   }
 
   // Edges that have a pcurve but no curve in space, and are no points, get one.
@@ -116,11 +130,11 @@ class PartBuilder {
                        "edges had no curves in space: made from their curves on a face");
   }
 
-  void build_faces() {
+  void build_faces(std::size_t first) {
     parallel_for(
-        pending_.size(),
+        pending_.size() - first,
         [&](std::size_t i) {
-          Pending& p = pending_[i];
+          Pending& p = pending_[first + i];
           if (p.surface)
             p.result = build_face(p.task, built_.part.surfaces[*p.surface], built_.part.edges, size_);
           else
@@ -129,14 +143,37 @@ class PartBuilder {
         8);
   }
 
+  // Faces that do not close as they are get a second chance.
+  void repair_faces() {
+    const std::size_t count = pending_.size();
+    int mended = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!pending_[i].result.skip && !pending_[i].result.repair) continue;
+      if (!pending_[i].surface) continue;
+      const std::size_t first = pending_.size();
+      for (const TopoDS_Face& face : repaired(pending_[i].task.shape)) add_pending(pending_[i].source, face);
+      convert_new_edges();
+      complete_edges();
+      build_faces(first);
+      const bool good = pending_.size() > first && std::all_of(pending_.begin() + static_cast<std::ptrdiff_t>(first), pending_.end(), [](const Pending& p) {
+        return !p.result.skip && !p.result.repair;
+      });
+      if (good) ++mended, pending_[i].replaced = true;
+      else pending_.resize(first);
+    }
+    if (mended > 0) note(mended, "face's boundary did not close and was mended", "faces' boundaries did not close and were mended");
+    std::stable_sort(pending_.begin(), pending_.end(), [](const Pending& a, const Pending& b) { return a.source < b.source; });
+  }
+
   void take_faces() {
     int refitted = 0;
     for (std::size_t i = 0; i < pending_.size(); ++i) {
       Pending& p = pending_[i];
-      const FaceSource& source = source_.faces[i];
+      if (p.replaced) continue;
+      const FaceSource& source = source_.faces[p.source];
       if (!p.result.skip) p.result.skip = p.result.repair;
       if (p.result.skip) {
-        built_.skipped.push_back({face_name(i), *p.result.skip, 1});
+        built_.skipped.push_back({face_name(p.source), *p.result.skip, 1});
         continue;
       }
       refitted += p.result.refitted;
@@ -148,7 +185,7 @@ class PartBuilder {
       for (const auto& [edge, deviation] : p.result.deviations)
         built_.part.edges[edge].tolerance = std::max(built_.part.edges[edge].tolerance, deviation);
       built_.part.faces.push_back(std::move(face));
-      built_.shapes.push_back(source.face);
+      built_.shapes.push_back(p.task.shape);
     }
     if (refitted > 0) note(refitted, "edge's curve on a face lay off the edge: projected anew",
                            "edges' curves on faces lay off the edges: projected anew");
@@ -161,6 +198,15 @@ class PartBuilder {
         trim.edge = static_cast<std::uint32_t>(built_.part.edges.size());
         built_.part.edges.push_back({std::nullopt, 0, 1, face.tolerance, false});
       }
+  }
+
+  void drop_invalid() {
+    std::vector<std::size_t> stay;
+    for (SkippedFace& face : remove_invalid_faces(built_.part, stay)) built_.skipped.push_back(std::move(face));
+    if (stay.size() == built_.shapes.size()) return;
+    std::vector<TopoDS_Face> shapes;
+    for (const std::size_t i : stay) shapes.push_back(built_.shapes[i]);
+    built_.shapes = std::move(shapes);
   }
 
   // Edges of faces that were skipped may have anything in them.
@@ -204,6 +250,7 @@ class PartBuilder {
   const PartSource& source_;
   BuiltPart built_;
   Topology topology_;
+  SurfaceTable surfaces_;
   std::vector<Pending> pending_;
   double size_ = 1;
 };

@@ -3,6 +3,7 @@
 #include <STEPCAFControl_Reader.hxx>
 
 #include "read_files.h"
+#include "step_faces.h"
 #include "xde_document.h"
 
 namespace dupin::reader {
@@ -25,6 +26,7 @@ Result<SourceDocument> read_step(const std::string& path, const Stage& stage) {
   if (!reader.Transfer(document)) return {StatusCode::unreadable, "the STEP file holds no shape that can be built"};
   SourceDocument out{"STEP", "mm"};
   add_items(document, out);
+  report_lost_faces(reader.Reader().WS(), out);
   return out;
 }
 

@@ -31,8 +31,9 @@ std::string name_of(const TDF_Label& label) {
 // Names that a file's writer or OCCT made up say nothing.
 bool says_nothing(const std::string& name) {
   static const std::set<std::string> kKinds{"",      "SOLID",     "SHELL",    "COMPOUND", "FACE",
-                                            "COMPSOLID", "ASSEMBLY", "SHAPE",    "Open CASCADE STEP translator"};
-  return kKinds.contains(name) || name.starts_with("NAUO") || name.starts_with("=>[");
+                                            "COMPSOLID", "ASSEMBLY", "SHAPE"};
+  return kKinds.contains(name) || name.starts_with("NAUO") || name.starts_with("=>[") ||
+         name.starts_with("Open CASCADE STEP translator");
 }
 
 class Walk {
