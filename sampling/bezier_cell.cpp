@@ -17,6 +17,8 @@ using bernstein::Side;
 
 /// ∂F/∂z stays above this over an accepted cell (1 at its centre).
 constexpr double kLeastSheet = 0.3;
+/// What a, b, c may take of that 1, so that the sheet's end stays well away.
+constexpr double kMostSteep = 0.5;
 /// The chart's Jacobian changes by at most this much, relative, over an accepted cell: then (s,t) ↦ (x,y) is one to one.
 constexpr double kMostTwist = 0.5;
 
@@ -35,6 +37,18 @@ Middle middle(const Vec4* b, int count, int degree) {
   if (count == 2) return {(b[0] + b[1]) * 0.5, b[1] - b[0], {}};
   return {(b[0] + b[1] * 2 + b[2]) * 0.25, (b[2] - b[0]) * (0.5 * degree),
           (b[0] - b[1] * 2 + b[2]) * (static_cast<double>(degree) * (degree - 1))};
+}
+
+/// The first `unknowns` of the normal equations g x = r, the others 0, with a ridge relative to each one's own size.
+Vec3 solve_ridge(const double g[3][3], const double r[3], int unknowns) {
+  double m[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, y[3] = {}, scale[3] = {};
+  for (int k = 0; k < unknowns; ++k) scale[k] = g[k][k] > 0 ? 1 / std::sqrt(g[k][k]) : 0;
+  for (int k = 0; k < unknowns; ++k) {
+    y[k] = r[k] * scale[k];
+    for (int l = 0; l < unknowns; ++l) m[k][l] = g[k][l] * scale[k] * scale[l] + (k == l ? 1e-10 : 0);
+  }
+  const Vec3 x = inverse(Mat3{{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}}) * Vec3{y[0], y[1], y[2]};
+  return {x.x * scale[0], x.y * scale[1], x.z * scale[2]};
 }
 
 /// De Casteljau at ½ down to at most three points; returns how many are left.
@@ -175,7 +189,7 @@ void CellFitter::load(const BezierPatch& grown, const QuadricDp& dp) {
 }
 
 /// a, b, c by least squares on the Bernstein coefficients of F∘S, which is linear in them.
-void CellFitter::fit_third_order(QuadricDp& dp) {
+void CellFitter::fit_third_order(double tolerance, QuadricDp& dp) {
   const int p = 2 * x_.p, q = 2 * x_.q;
   bernstein::multiply(x_, z_, xz_);
   bernstein::multiply(y_, z_, yz_);
@@ -193,16 +207,17 @@ void CellFitter::fit_third_order(QuadricDp& dp) {
         for (int l = 0; l < 3; ++l) g[k][l] += e[k] * e[l];
       }
     }
-  // Where the cell is all but flat the three are not determined: a ridge relative to each one's own size keeps them small.
-  double scale[3];
-  for (int k = 0; k < 3; ++k) scale[k] = g[k][k] > 0 ? 1 / std::sqrt(g[k][k]) : 0;
-  Mat3 m;
-  double rows[3][3];
-  for (int k = 0; k < 3; ++k)
-    for (int l = 0; l < 3; ++l) rows[k][l] = g[k][l] * scale[k] * scale[l] + (k == l ? 1e-9 : 0);
-  m.x = {rows[0][0], rows[1][0], rows[2][0]}, m.y = {rows[0][1], rows[1][1], rows[2][1]}, m.z = {rows[0][2], rows[1][2], rows[2][2]};
-  const Vec3 x = inverse(m) * Vec3{r[0] * scale[0], r[1] * scale[1], r[2] * scale[2]};
-  if (is_finite(x)) dp.a = x.x * scale[0], dp.b = x.y * scale[1], dp.c = x.z * scale[2];
+  const double ax = std::max(-box_.lo.x, box_.hi.x), ay = std::max(-box_.lo.y, box_.hi.y), az = std::max(-box_.lo.z, box_.hi.z);
+  const double room = az + tolerance;
+  auto steep = [&] { return std::abs(dp.a) * ax + std::abs(dp.b) * ay + std::abs(dp.c) * room > kMostSteep; };
+  // Where the cell is all but flat c means next to nothing, and comes out as large as it likes; likewise a and b.
+  for (int unknowns = 3; unknowns > 0; --unknowns) {
+    Vec3 x = solve_ridge(g, r, unknowns);
+    dp.a = x.x, dp.b = x.y, dp.c = x.z;
+    if (is_finite(x) && !steep()) break;
+    dp.a = dp.b = dp.c = 0;
+    if (unknowns == 2) break;
+  }
   for (std::size_t i = 0; i < f_.c.size(); ++i) f_.c[i] -= dp.a * xz_.c[i] + dp.b * yz_.c[i] + 0.5 * dp.c * zz_.c[i];
 }
 
@@ -309,7 +324,7 @@ CellFit CellFitter::fit(const BezierPatch& cell, double tolerance, double normal
   if (!place(cell, out)) return out;
   load(grown, out.dp);
   if (!(least_w_ > 0)) return out;
-  fit_third_order(out.dp);
+  fit_third_order(tolerance, out.dp);
   out.valid = certify(collapsed, tolerance, normal_tolerance, out);
   if (!out.valid) {
     // Where the quadric is not close enough, along the parameter in which F∘S varies more; where the cell is bent or twisted too

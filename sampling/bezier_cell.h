@@ -39,7 +39,7 @@ class CellFitter {
  private:
   bool place(const BezierPatch& cell, CellFit& out);
   void load(const BezierPatch& grown, const QuadricDp& dp);
-  void fit_third_order(QuadricDp& dp);
+  void fit_third_order(double tolerance, QuadricDp& dp);
   bool certify(const CollapsedSides& collapsed, double tolerance, double normal_tolerance, CellFit& out);
   bool certify_normals(const CollapsedSides& collapsed, double normal_tolerance, double gz, CellFit& out);
   bernstein::Range derivative_range(const bernstein::Net& numerator, bool along_u, const bernstein::Side* collapsed, int power);
