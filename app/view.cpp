@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace dupin::app {
@@ -53,17 +54,36 @@ std::pair<double, double> usable_tangents(const Camera& camera) {
   return {vertical * camera.width / camera.height, vertical};
 }
 
-/// The smallest distance from the target at which every corner is in the picture: a corner at (x, y, z) in the camera's axes
-/// about the target is where |x| <= tan · (distance − z).
-double fitted_distance(const Camera& camera, const CameraAxes& axes, const std::vector<Vec3>& corners) {
+/// Where the eye has to be along an axis of the picture, and how far back at least, for every corner to be seen: a corner at
+/// (x, z) is where |x − eye| <= tan · (eye_z − z), which is x + tan·z <= eye + tan·eye_z and x − tan·z >= eye − tan·eye_z.
+struct AxisFit {
+  double eye, eye_z;
+};
+AxisFit fit_axis(const std::vector<Vec3>& corners, const Vec3& origin, const Vec3& axis, const Vec3& back, double tangent) {
+  double hi = -std::numeric_limits<double>::infinity(), lo = -hi;
+  for (const Vec3& corner : corners) {
+    const Vec3 d = corner - origin;
+    hi = std::max(hi, dot(d, axis) + tangent * dot(d, back));
+    lo = std::min(lo, dot(d, axis) - tangent * dot(d, back));
+  }
+  return {(hi + lo) / 2, (hi - lo) / 2 / tangent};
+}
+
+/// The nearest eye that sees every corner, looking along −back; with a fixed target, the nearest on the line through it.
+Vec3 fitted_eye(const Camera& camera, const CameraAxes& axes, const std::vector<Vec3>& corners, bool fixed_target) {
   const auto [tan_x, tan_y] = usable_tangents(camera);
+  if (!fixed_target) {
+    const AxisFit x = fit_axis(corners, camera.target, axes.right, axes.back, tan_x);
+    const AxisFit y = fit_axis(corners, camera.target, axes.up, axes.back, tan_y);
+    return camera.target + axes.right * x.eye + axes.up * y.eye + axes.back * std::max(x.eye_z, y.eye_z);
+  }
   double distance = 0;
   for (const Vec3& corner : corners) {
     const Vec3 d = corner - camera.target;
     const double z = dot(d, axes.back);
     distance = std::max({distance, z + std::abs(dot(d, axes.right)) / tan_x, z + std::abs(dot(d, axes.up)) / tan_y});
   }
-  return distance;
+  return camera.target + axes.back * distance;
 }
 
 double fitted_height(const Camera& camera, const CameraAxes& axes, const std::vector<Vec3>& corners) {
@@ -138,10 +158,13 @@ Result<Camera> make_camera(const ViewOptions& options, const Model& model) {
   const CameraAxes axes = camera_axes(camera);
   // A model without extent in any direction is looked at from one unit away.
   const double extent = box.diagonal() > 0 ? box.diagonal() : 1;
-  if (options.eye.empty()) {
-    // A parallel picture does not depend on the distance; the model's own size keeps it in front of the eye.
-    const double distance = camera.orthographic ? extent : fitted_distance(camera, axes, corners);
-    camera.eye = camera.target + axes.back * (distance > 0 ? distance : extent);
+  if (options.eye.empty() && camera.orthographic) {
+    camera.eye = camera.target + axes.back * extent;  // a parallel picture does not depend on the distance
+  } else if (options.eye.empty() && box.diagonal() > 0) {
+    camera.eye = fitted_eye(camera, axes, corners, !options.target.empty());
+    if (options.target.empty()) camera.target = camera.eye - axes.back * dot(camera.eye - camera.target, axes.back);
+  } else if (options.eye.empty()) {
+    camera.eye = camera.target + axes.back * extent;
   }
   if (camera.orthographic) {
     const double fitted = fitted_height(camera, axes, corners);

@@ -22,7 +22,8 @@ Image square(int size, float value, float depth) {
     for (int x = 0; x < size; ++x) {
       const std::size_t i = static_cast<std::size_t>(y) * size + x;
       const bool inside = x >= size / 4 && x < size * 3 / 4 && y >= size / 4 && y < size * 3 / 4;
-      for (const char* name : {"R", "G", "B", "A"}) image.channel(name).values[i] = inside ? value : 0;
+      for (const char* name : {"R", "G", "B"}) image.channel(name).values[i] = inside ? value : 0;
+      image.channel("A").values[i] = 1;
       image.channel("N.Z").values[i] = inside ? 1 : 0;
       image.channel("Z").values[i] = inside ? depth : std::numeric_limits<float>::infinity();
     }
