@@ -79,8 +79,13 @@ struct SurfaceJet {
   Vec3 puuu, puuv, puvv, pvvv;
 };
 
-/// Point and derivatives to `order` (0 … 3; to 2 for an offset of an offset). B-splines are clamped to their
-/// domain, or wrapped if periodic. Relative error below 1e-13 of the poles' extent times the derivative's scale.
+/// An evaluated derivative is wrong by at most kEvaluateError · extent · rate_uⁱ · rate_vʲ for ∂ⁱ⁺ʲ/∂uⁱ∂vʲ (a position also by 2 ulp of its
+/// coordinates), wherever the surface lies. The extent is that of the poles, or the radii and lengths of other kinds; the rate is
+/// 1 for angles and lengths, and 2 · degree · (largest / smallest weight) / (shortest knot span) for splines.
+inline constexpr double kEvaluateError = 1e-14;
+
+/// Point and derivatives to `order` (0 … 3). B-splines are clamped to their domain, or wrapped if periodic; at a
+/// knot the right-hand derivatives are meant. An offset is not finite where its base has no normal, not even as a limit.
 SurfaceJet evaluate(const Surface& surface, double u, double v, int order);
 inline Vec3 point_at(const Surface& surface, double u, double v) { return evaluate(surface, u, v, 0).p; }
 
