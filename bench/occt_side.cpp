@@ -137,7 +137,6 @@ OcctShape::Triangles OcctShape::triangles() const {
     const Handle(Poly_Triangulation) mesh = BRep_Tool::Triangulation(face, location);
     if (mesh.IsNull()) continue;
     counts.triangles += mesh->NbTriangles();
-    counts.vertices += mesh->NbNodes();
     const BRepAdaptor_Surface surface(TopoDS::Face(face.Located(TopLoc_Location())), false);
     if (surface.GetType() <= GeomAbs_Sphere) continue;  // plane, cylinder, cone, sphere come first
     counts.on_curved += mesh->NbTriangles();

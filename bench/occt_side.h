@@ -20,7 +20,7 @@ class OcctShape {
 
   /// Of the last mesh. Faces that occur several times in an assembly share their triangles and count once.
   struct Triangles {
-    std::size_t triangles = 0, vertices = 0;
+    std::size_t triangles = 0;
     std::size_t on_curved = 0;  ///< triangles of faces that are no plane, cylinder, cone or sphere
     /// The angle between the interpolated vertex normals and the surface's own normal over those faces: what 99 % of their
     /// area stays below, in degrees. 0 where there are none.

@@ -30,9 +30,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr double kPi = 3.14159265358979323846;
-// What a face of triangles that are exact in their normals (a mesh of flat faces) would ask of Dupin is nothing it could be
-// compared by; certified normals are never asked to be better than this.
-constexpr double kFinestNormalDegrees = 0.02;
+// Normals of triangles that are all but exact (ruled faces), or all but arbitrary (collapsed ones), set no standard.
+constexpr double kFinestNormalDegrees = 0.02, kCoarsestNormalDegrees = 5;
 
 struct Options {
   std::vector<std::string> paths;
@@ -42,17 +41,6 @@ struct Options {
   int runs = 3, threads = 0, seconds_a_file = 300;
   std::string output;
 };
-
-std::size_t triangle_bytes(std::size_t vertices, std::size_t triangles) { return 24 * vertices + 12 * triangles; }
-
-/// What the GPU holds of a scene, as the renderer lays it out: a record a DP, and its pieces.
-std::size_t gpu_bytes(const DpScene& scene) {
-  std::size_t bytes = 0;
-  for (const PartDps& part : scene.parts)
-    bytes += 112 * part.dps.size() + 16 * (part.planes.size() + part.lines.size()) + 32 * part.arcs.size() +
-             32 * part.ellipses.size();
-  return bytes;
-}
 
 std::size_t count_on_curved(const Model& model, const DpScene& scene) {
   std::size_t count = 0;
@@ -73,7 +61,9 @@ Json measure_at(const Options& options, const Model& model, OcctShape& shape, do
   shape.mesh(tolerance * diagonal, options.angle_radians);
   const OcctShape::Triangles triangles = shape.triangles();
   const double normal_degrees =
-      options.normal_degrees > 0 ? options.normal_degrees : std::max(triangles.normal_p99_degrees, kFinestNormalDegrees);
+      options.normal_degrees > 0
+          ? options.normal_degrees
+          : std::clamp(triangles.normal_p99_degrees, kFinestNormalDegrees, kCoarsestNormalDegrees);
   SamplingOptions sampling;
   sampling.tolerance = tolerance * diagonal;
   sampling.normal_tolerance = normal_degrees * kPi / 180;
@@ -92,8 +82,6 @@ Json measure_at(const Options& options, const Model& model, OcctShape& shape, do
           {"dupin_s", median(ours)}, {"mesh_s", median(theirs)}, {"faster", median(theirs) / median(ours)},
           {"dps", scene->count()}, {"triangles", triangles.triangles},
           {"dps_on_curved", count_on_curved(model, *scene)}, {"triangles_on_curved", triangles.on_curved},
-          {"dupin_bytes", gpu_bytes(*scene)},
-          {"triangle_bytes", std::max<std::size_t>(1, triangle_bytes(triangles.vertices, triangles.triangles))},
           {"bound", scene->bound / diagonal}, {"normal_bound_degrees", scene->normal_bound * 180 / kPi},
           {"skipped_faces", skipped_faces(*scene)}};
 }

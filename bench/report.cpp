@@ -19,20 +19,19 @@ double median(std::vector<double> values) {
 std::string table_line(const nlohmann::json* row) {
   char text[512];
   if (!row) {
-    std::snprintf(text, sizeof text, "%-44s %7s %7s %9s %9s %7s %9s %9s %8s %8s %7s", "file", "toler.", "normal",
-                  "dupin ms", "mesh ms", "faster", "DPs", "triangles", "curved", "their", "bytes");
+    std::snprintf(text, sizeof text, "%-44s %7s %7s %9s %9s %7s %9s %9s %8s %9s", "file", "toler.", "normal",
+                  "dupin ms", "mesh ms", "faster", "DPs", "triangles", "curved:", "triangles");
     return text;
   }
   const nlohmann::json& r = *row;
   std::string name = r.at("file");
   if (name.size() > 44) name = "…" + name.substr(name.size() - 43);
   if (r.contains("failed")) return name + ": " + r.at("failed").get<std::string>();
-  std::snprintf(text, sizeof text, "%-44s %7.2g %7.3f %9.2f %9.2f %6.1fx %9ld %9ld %8ld %8ld %6.1f%%", name.c_str(),
+  std::snprintf(text, sizeof text, "%-44s %7.2g %7.3f %9.2f %9.2f %6.1fx %9ld %9ld %8ld %9ld", name.c_str(),
                 r.at("tolerance").get<double>(), r.at("normal_degrees").get<double>(),
                 1e3 * r.at("dupin_s").get<double>(), 1e3 * r.at("mesh_s").get<double>(), r.at("faster").get<double>(),
                 r.at("dps").get<long>(), r.at("triangles").get<long>(), r.at("dps_on_curved").get<long>(),
-                r.at("triangles_on_curved").get<long>(),
-                100 * r.at("dupin_bytes").get<double>() / r.at("triangle_bytes").get<double>());
+                r.at("triangles_on_curved").get<long>());
   return text;
 }
 
@@ -41,19 +40,18 @@ void print_summary(const std::vector<nlohmann::json>& rows) {
   for (const nlohmann::json& row : rows)
     if (!row.contains("failed")) by_tolerance[row.at("tolerance").get<double>()].push_back(&row);
   for (const auto& [tolerance, group] : by_tolerance) {
-    std::vector<double> faster, fewer, bytes;
+    std::vector<double> faster, fewer;
     std::size_t slower = 0;
     for (const nlohmann::json* row : group) {
       const auto number = [&](const char* key) { return row->at(key).get<double>(); };
-      bytes.push_back(number("dupin_bytes") / number("triangle_bytes"));
       if (number("dps_on_curved") > 0) fewer.push_back(number("triangles_on_curved") / number("dps_on_curved"));
       if (number("mesh_s") < kShortestSeconds) continue;
       faster.push_back(number("faster"));
       slower += number("faster") < 1;
     }
     std::printf("at %g of the diagonal, medians: %.1f times faster (%zu files whose mesh takes 5 ms or more; %zu slower),"
-                " %.1f times fewer primitives on faces that are no quadric, %.1f %% of the bytes\n",
-                tolerance, median(faster), faster.size(), slower, median(fewer), 100 * median(bytes));
+                " %.1f times fewer primitives on faces that are no quadric\n",
+                tolerance, median(faster), faster.size(), slower, median(fewer));
   }
 }
 

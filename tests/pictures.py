@@ -89,7 +89,8 @@ class Checker:
         extra = ["--deflection", "1e-5"] if kind == "triangles" else []
         size = f"{self.options.size},{self.options.size}"
         done = run([self.options.dupin, "render", file, "-o", picture, "--primitive", kind, "--resolution", size, "--no-edges",
-                    "--aov", "normal,depth,face", "--stats", stats, "--quiet", *extra, *view], self.options.seconds)
+                    "--aov", "normal,depth,face", "--stats", stats, "--quiet", "--memory-limit",
+                    self.options.memory, *extra, *view], self.options.seconds)
         if done.returncode not in (0, 4):
             raise RuntimeError(f"{kind}: exit {done.returncode}: {done.stderr.strip()[-160:]}")
         return picture, json.loads(stats.read_text())
@@ -142,6 +143,7 @@ def main():
     parser.add_argument("--cameras", default="whole,whole,close")
     parser.add_argument("--size", type=int, default=768)
     parser.add_argument("--seconds", type=int, default=300, help="longest time for one command")
+    parser.add_argument("--memory", default="8G", help="the command's memory limit")
     parser.add_argument("--strict", action="store_true", help="an unreadable file is a shortfall")
     parser.add_argument("--keep", action="store_true", help="keep the pictures")
     options = parser.parse_args()
