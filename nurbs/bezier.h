@@ -30,6 +30,9 @@ struct BezierPatch {
   Vec4& pole(int i, int j) { return poles[static_cast<std::size_t>(i * (degree_v + 1) + j)]; }
 };
 
+/// Largest distance between a patch and its surface at the same parameters, times the largest coordinate of a pole.
+inline constexpr double kBezierError = 2e-15;
+
 /// The patches that make up the surface over `region`, which must be finite and inside the domain (or within one
 /// period of it): one per knot span, arcs of at most 90 degrees. Empty for an offset surface, which is not rational,
 /// and for profiles that are offset curves or hyperbolas.

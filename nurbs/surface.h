@@ -108,6 +108,12 @@ struct Curvature {
   double k1 = 0, k2 = 0;
   Kind kind = Kind::regular;
 };
+/// Largest error of a curvature from an exact jet, times |Suu|/a² + |Suv|/(ad) + |Svv|/d² with the lengths a, d of Su and of the
+/// part of Sv across it (for partials at an angle of θ divided by sin θ, by which the normal is uncertain).
+inline constexpr double kCurvatureError = 1e-15;
+/// Largest error of a limit: of the normal, and of curvatures in relation to their size beside the singular point.
+inline constexpr double kLimitError = 1e-8;
+
 /// From a jet of order 2 or more. Never singular_limit: that needs the surface.
 Curvature principal_curvature(const SurfaceJet& jet);
 /// The same at (u,v), with limits at poles and collapsed edges; `inside` is a point of the domain towards which
