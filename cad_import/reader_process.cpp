@@ -307,9 +307,10 @@ Result<std::string> find_reader(const std::string& asked) {
   }
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-  for (const std::filesystem::path& place : {self / "dupin-reader", self / "../libexec/dupin/dupin-reader",
-                                             self / "../cad_import/dupin-reader",
-                                             std::filesystem::path(DUPIN_INSTALLED_READER)})
+  for (const std::filesystem::path& place :
+       {self / "dupin-reader", self / "../libexec/dupin/dupin-reader", self / "../cad_import/dupin-reader",
+        self / "../../cad_import/dupin-reader",  // a build tree's
+        std::filesystem::path(DUPIN_INSTALLED_READER)})
     if (is_program(place)) return place.lexically_normal().string();
   return {StatusCode::unreadable,
           "the CAD reader (dupin-reader) was not found; set DUPIN_READER or install it to " DUPIN_INSTALLED_READER};

@@ -24,7 +24,7 @@ struct ReaderCommand {
 Result<std::string> run_reader(const ReaderCommand& command);
 
 /// The reading program's path: `asked` if not empty, else $DUPIN_READER, then beside the running program, then in
-/// ../libexec/dupin from there, then where the library was installed to.
+/// ../libexec/dupin from there, then in a build tree, then where the library was installed to.
 Result<std::string> find_reader(const std::string& asked);
 
 }  // namespace dupin

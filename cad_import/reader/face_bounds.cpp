@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "extrema.h"
+#include "region_grid.h"
 
 namespace dupin::reader {
 namespace {
@@ -144,17 +145,102 @@ Box3 surface_bounds(const Surface& surface, const Box2& uv) {
   return std::visit([&](const auto& s) { return bounds(s, uv); }, surface.geometry);
 }
 
-Box3 face_bounds(const Part& part, const Face& face) {
-  const Surface& surface = part.surfaces[face.surface];
-  if (!std::holds_alternative<Plane>(surface.geometry) || face.loops.empty())
-    return surface_bounds(surface, face.uv_box);
+namespace {
+
+// On ruled surfaces, and planes, the face's extrema lie on its boundary: along a ruling a coordinate is linear.
+bool is_ruled(const Surface& surface) {
+  return std::holds_alternative<Plane>(surface.geometry) || std::holds_alternative<Cylinder>(surface.geometry) ||
+         std::holds_alternative<Cone>(surface.geometry) || std::holds_alternative<Extrusion>(surface.geometry);
+}
+
+Box3 boundary_bounds(const Part& part, const Face& face, const std::vector<Box3>& edge_boxes) {
   Box3 box;
   for (const Loop& loop : face.loops)
     for (const Trim& trim : loop) {
+      box.add(edge_boxes[trim.edge]);
+      if (!trim.degenerate) continue;
       const Edge& edge = part.edges[trim.edge];
-      if (edge.curve) box.add(curve_bounds(*edge.curve, edge.t0, edge.t1));
+      for (const double t : {edge.t0, edge.t1}) {
+        const Vec2 q = point_at(trim.pcurve, t);
+        box.add(point_at(part.surfaces[face.surface], q.x, q.y));
+      }
     }
   return box;
+}
+
+// The points of a sphere or torus whose normal is along an axis, where the parameter box has them.
+void add_poles(const Frame3& frame, const Surface& surface, const Box2& uv, Box3& box) {
+  constexpr double kPi = std::numbers::pi;
+  const auto into = [](double t, double lo) { return t + std::ceil((lo - t) / (2 * kPi)) * 2 * kPi; };
+  for (int k = 0; k < 3; ++k) {
+    const double turn = std::atan2(frame.y[k], frame.x[k]), rise = std::asin(std::clamp(frame.z[k], -1.0, 1.0));
+    for (const double u : {into(turn, uv.lo.x), into(turn + kPi, uv.lo.x)})
+      for (const double v0 : {rise, -rise, kPi - rise, kPi + rise}) {
+        const double v = into(v0, uv.lo.y);
+        if (u <= uv.hi.x && v <= uv.hi.y) box.add(point_at(surface, u, v));
+      }
+  }
+}
+
+int cells_along(const Surface& surface, bool in_u, double lo, double hi) {
+  int cells = 16;
+  if (const auto* spline = std::get_if<BsplineSurface>(&surface.geometry)) {
+    const auto& knots = in_u ? spline->knots_u : spline->knots_v;
+    cells = 2 * static_cast<int>(std::count_if(knots.begin(), knots.end(), [&](double k) { return k > lo && k < hi; }) + 1);
+  }
+  return std::clamp(cells, 16, 64);
+}
+
+// Corners of the cells that the face touches, widened by what the surface can rise between them.
+Box3 sampled_bounds(const Part& part, const Face& face) {
+  const Surface& surface = part.surfaces[face.surface];
+  const Box2& uv = face.uv_box;
+  const RegionGrid grid(part, face, cells_along(surface, true, uv.lo.x, uv.hi.x),
+                        cells_along(surface, false, uv.lo.y, uv.hi.y));
+  const double hu = uv.size().x / grid.cells_u(), hv = uv.size().y / grid.cells_v();
+  Box3 box;
+  double rise = 0;
+  for (int i = 0; i <= grid.cells_u(); ++i)
+    for (int j = 0; j <= grid.cells_v(); ++j) {
+      const auto touched = [&](int a, int b) {
+        return a >= 0 && b >= 0 && a < grid.cells_u() && b < grid.cells_v() && grid.touches(a, b);
+      };
+      if (!touched(i, j) && !touched(i - 1, j) && !touched(i, j - 1) && !touched(i - 1, j - 1)) continue;
+      const Vec2 q = grid.corner(i, j);
+      const SurfaceJet s = evaluate(surface, q.x, q.y, 2);
+      if (!is_finite(s.p)) continue;
+      box.add(s.p);
+      const double bend = (hu * hu * length(s.puu) + 2 * hu * hv * length(s.puv) + hv * hv * length(s.pvv)) / 8;
+      if (std::isfinite(bend)) rise = std::max(rise, bend);
+    }
+  const Vec3 pad = Vec3{1, 1, 1} * rise;
+  box.lo -= pad, box.hi += pad;
+  return box;
+}
+
+Box3 intersection(const Box3& a, const Box3& b) {
+  Box3 box;
+  for (int k = 0; k < 3; ++k) box.lo[k] = std::max(a.lo[k], b.lo[k]), box.hi[k] = std::min(a.hi[k], b.hi[k]);
+  return box.empty() ? a : box;
+}
+
+}  // namespace
+
+Box3 face_bounds(const Part& part, const Face& face, const std::vector<Box3>& edge_boxes) {
+  const Surface& surface = part.surfaces[face.surface];
+  const Box3 boundary = boundary_bounds(part, face, edge_boxes);
+  if (!face.loops.empty() && is_ruled(surface)) return boundary;
+  Box3 inside;
+  if (const auto* sphere = std::get_if<Sphere>(&surface.geometry)) {
+    add_poles(sphere->frame, surface, face.uv_box, inside);
+  } else if (const auto* torus = std::get_if<Torus>(&surface.geometry)) {
+    add_poles(torus->frame, surface, face.uv_box, inside);
+  } else if (!is_ruled(surface)) {
+    inside = intersection(surface_bounds(surface, face.uv_box), sampled_bounds(part, face));
+  }
+  if (face.loops.empty()) return surface_bounds(surface, face.uv_box);
+  inside.add(boundary);
+  return inside;
 }
 
 }  // namespace dupin::reader

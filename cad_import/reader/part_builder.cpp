@@ -25,6 +25,9 @@ namespace {
 // What a space curve made from a pcurve may differ from it, as a part of the piece's size.
 constexpr double kCurveFit = 1e-9;
 
+// A deviation between the samples may be this much larger than at them.
+constexpr double kSampling = 1.5;
+
 class SurfaceTable {
  public:
   /// The index of the face's surface in its piece's space; none for a kind that cannot be had.
@@ -183,7 +186,7 @@ class PartBuilder {
       face.name = source.name;
       number_new_edges(face);
       for (const auto& [edge, deviation] : p.result.deviations)
-        built_.part.edges[edge].tolerance = std::max(built_.part.edges[edge].tolerance, deviation);
+        built_.part.edges[edge].tolerance = std::max(built_.part.edges[edge].tolerance, kSampling * deviation);
       built_.part.faces.push_back(std::move(face));
       built_.shapes.push_back(p.task.shape);
     }

@@ -223,9 +223,19 @@ void mark_closed(Part& part) {
 }
 
 void set_part_box(Part& part) {
-  std::vector<Box3> boxes(part.faces.size());
+  std::vector<Box3> edge_boxes(part.edges.size()), boxes(part.faces.size());
   parallel_for(
-      part.faces.size(), [&](std::size_t i) { boxes[i] = face_bounds(part, part.faces[i]); }, 16);
+      part.edges.size(),
+      [&](std::size_t i) {
+        const Edge& edge = part.edges[i];
+        if (!edge.curve) return;
+        edge_boxes[i] = curve_bounds(*edge.curve, edge.t0, edge.t1);
+        const Vec3 pad = Vec3{1, 1, 1} * edge.tolerance;
+        edge_boxes[i].lo -= pad, edge_boxes[i].hi += pad;
+      },
+      64);
+  parallel_for(
+      part.faces.size(), [&](std::size_t i) { boxes[i] = face_bounds(part, part.faces[i], edge_boxes); }, 16);
   part.box = {};
   for (const Box3& box : boxes) part.box.add(box);
 }
