@@ -40,6 +40,8 @@ Status Renderer::Impl::fill_slots() {
   if (!prepare) return prepare.status();
   gl->Uniform1f(gl->GetUniformLocation(*prepare, "spread"), view_spread_);
   gl->Uniform1f(gl->GetUniformLocation(*prepare, "start_depth"), static_cast<float>(list_.start_depth));
+  // Even what rasterises nothing needs a complete framebuffer, which a context without a surface lacks.
+  gl->BindFramebuffer(GL_FRAMEBUFFER, visibility_framebuffer_.name());
   gl->BindVertexArray(item_array_.name());
   gl->Enable(GL_RASTERIZER_DISCARD);
   gl->BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, slots_.buffer());

@@ -101,6 +101,19 @@ TEST(Drawing, TheEyeMayBeInsideAPrimitivesBox) {
   expect_same(draw_and_compare(made, camera));
 }
 
+TEST(Drawing, EveryFrameShowsItsOwnCamera) {
+  HandMade made = every_kind();
+  made.place({});
+  TestDevice gl;
+  const auto scene = gl.upload(made);
+  DrawOptions options;
+  options.outputs = kEverything;
+  for (const std::string_view view : {"iso", "bottom", "left"}) {
+    const Camera camera = fitted(made, view, small_camera());
+    expect_same(differences(made, camera, gl.draw(*scene, camera, options)));
+  }
+}
+
 TEST(Drawing, FarFromTheOriginLooksTheSame) {
   HandMade made = every_kind();
   const Vec3 far{1e7, -2e7, 5e6};  // kilometres away, in millimetres, for a scene of two
