@@ -51,6 +51,27 @@ Vec3 solve_ridge(const double g[3][3], const double r[3], int unknowns) {
   return {x.x * scale[0], x.y * scale[1], x.z * scale[2]};
 }
 
+/// g x = r (r in the last column; the lower triangle of g is enough), by Cholesky with a ridge relative to each one's own size.
+void solve_cubic(const double g[4][5], double x[4]) {
+  double l[4][4] = {}, y[4], scale[4];
+  for (int k = 0; k < 4; ++k) scale[k] = g[k][k] > 0 ? 1 / std::sqrt(g[k][k]) : 0;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      double sum = g[i][j] * scale[i] * scale[j] + (i == j ? 1e-10 : 0);
+      for (int k = 0; k < j; ++k) sum -= l[i][k] * l[j][k];
+      l[i][j] = i == j ? std::sqrt(std::max(sum, 1e-12)) : sum / l[j][j];
+    }
+    y[i] = g[i][4] * scale[i];
+    for (int k = 0; k < i; ++k) y[i] -= l[i][k] * y[k];
+    y[i] /= l[i][i];
+  }
+  for (int i = 3; i >= 0; --i) {
+    for (int k = i + 1; k < 4; ++k) y[i] -= l[k][i] * y[k];
+    y[i] /= l[i][i];
+  }
+  for (int i = 0; i < 4; ++i) x[i] = std::isfinite(y[i]) ? y[i] * scale[i] : 0;
+}
+
 /// De Casteljau at ½ down to at most three points; returns how many are left.
 int reduce(Vec4* b, int degree) {
   int n = degree + 1;
@@ -139,13 +160,11 @@ void split_patch(const BezierPatch& patch, bool along_u, BezierPatch& first, Bez
   }
 }
 
-BezierPatch grown_patch(const BezierPatch& patch, const CollapsedSides& collapsed) {
+BezierPatch grown_patch(const BezierPatch& patch, const CellMargins& m) {
   BezierPatch grown = patch;
-  const double m = kCellMargin;
   for (int j = 0; j <= patch.degree_v; ++j)
-    reparametrise(&grown.pole(0, j), patch.degree_u, patch.degree_v + 1, collapsed.u0 ? 0 : -m, collapsed.u1 ? 1 : 1 + m);
-  for (int i = 0; i <= patch.degree_u; ++i)
-    reparametrise(&grown.pole(i, 0), patch.degree_v, 1, collapsed.v0 ? 0 : -m, collapsed.v1 ? 1 : 1 + m);
+    reparametrise(&grown.pole(0, j), patch.degree_u, patch.degree_v + 1, -m.side[3], 1 + m.side[1]);
+  for (int i = 0; i <= patch.degree_u; ++i) reparametrise(&grown.pole(i, 0), patch.degree_v, 1, -m.side[0], 1 + m.side[2]);
   return grown;
 }
 
@@ -221,7 +240,7 @@ void CellFitter::fit_third_order(double tolerance, QuadricDp& dp) {
   for (std::size_t i = 0; i < f_.c.size(); ++i) f_.c[i] -= dp.a * xz_.c[i] + dp.b * yz_.c[i] + 0.5 * dp.c * zz_.c[i];
 }
 
-bool CellFitter::certify(const CollapsedSides& collapsed, double tolerance, double normal_tolerance, CellFit& out) {
+bool CellFitter::certify(double tolerance, double normal_tolerance, CellFit& out) {
   QuadricDp& dp = out.dp;
   const double value_bound = bernstein::magnitude(f_) / (least_w_ * least_w_);
   const double ax = std::max(-box_.lo.x, box_.hi.x), ay = std::max(-box_.lo.y, box_.hi.y), az = std::max(-box_.lo.z, box_.hi.z);
@@ -232,13 +251,14 @@ bool CellFitter::certify(const CollapsedSides& collapsed, double tolerance, doub
   out.quadric_decides = !(out.bound <= tolerance);
   if (out.quadric_decides) return false;
   dp.z_lo = box_.lo.z - out.bound, dp.z_hi = box_.hi.z + out.bound;
-  return certify_normals(collapsed, normal_tolerance, gz, out);
+  return certify_normals(normal_tolerance, gz, out);
 }
 
 /// Ranges of the derivative of A/W^power along one parameter, over the cell. Along a collapsed side that derivative vanishes;
 /// divided by the distance to the side (in the other parameter) it does not, and neither does the Jacobian's column: the gradient
 /// in the chart, which is what counts, stays the same.
-Range CellFitter::derivative_range(const Net& numerator, bool along_u, const Side* collapsed, int power) {
+Range CellFitter::derivative_range(const Net& numerator, bool along_u, int power) {
+  const Side* collapsed = along_u ? divide_u_ : divide_v_;
   const auto derive = [&](const Net& a, Net& out) { along_u ? bernstein::derivative_u(a, out) : bernstein::derivative_v(a, out); };
   if (!rational_) {
     derive(numerator, d_);
@@ -247,7 +267,7 @@ Range CellFitter::derivative_range(const Net& numerator, bool along_u, const Sid
     return bernstein::range(tmp_);
   }
   // (A/W^k)' = (A' − k (A/W) W') / W^k. With a the value at the collapsed side, A − a W^k vanishes there and may take A's place.
-  const Net& w = power == 1 ? w_ : ww_;
+  const Net& w = power == 1 ? w_ : w_power_[power - 2];
   Net& a = shifted_;
   a = numerator;
   Range value;
@@ -264,53 +284,111 @@ Range CellFitter::derivative_range(const Net& numerator, bool along_u, const Sid
     value = bernstein::range(a);
     derive(a, d_);
   }
-  const Range over_w{1 / most_w_, 1 / least_w_}, over_wk = power == 1 ? over_w : product(over_w, over_w);
+  const Range over_w{1 / most_w_, 1 / least_w_};
+  Range over_wk = over_w;
+  for (int k = 1; k < power; ++k) over_wk = product(over_wk, over_w);
   derive(w_, dw_);
   const Range drift = product(product(value, over_w), bernstein::range(dw_)) * (-1.0 * power);
   return product(bernstein::range(d_) + drift, over_wk);
 }
 
-bool CellFitter::certify_normals(const CollapsedSides& collapsed, double normal_tolerance, double gz, CellFit& out) {
-  const QuadricDp& dp = out.dp;
-  const double m = kCellMargin;
-  const double grow_u = 1 + (collapsed.u0 ? 0 : m) + (collapsed.u1 ? 0 : m), grow_v = 1 + (collapsed.v0 ? 0 : m) + (collapsed.v1 ? 0 : m);
-  // The centre of the cell, as a parameter of the grown one.
-  const double mid_u = (0.5 + (collapsed.u0 ? 0 : m)) / grow_u, mid_v = (0.5 + (collapsed.v0 ? 0 : m)) / grow_v;
+/// The Jacobian at the centre and its inverse, in the grown cell's parameters, divided as the derivatives are (see derivative_range).
+bool CellFitter::set_up_normals(const CollapsedSides& collapsed, const CellMargins& m) {
   if ((collapsed.u0 && collapsed.u1) || (collapsed.v0 && collapsed.v1)) return false;
-  const Side sides[4] = {Side::u0, Side::u1, Side::v0, Side::v1};
-  const Side* for_v = collapsed.u0 ? &sides[0] : collapsed.u1 ? &sides[1] : nullptr;  // divides ∂/∂v
-  const Side* for_u = collapsed.v0 ? &sides[2] : collapsed.v1 ? &sides[3] : nullptr;
-  const double over_u = for_u ? 1 / (collapsed.v0 ? mid_v : 1 - mid_v) : 1, over_v = for_v ? 1 / (collapsed.u0 ? mid_u : 1 - mid_u) : 1;
+  const double grow_u = 1 + m.side[3] + m.side[1], grow_v = 1 + m.side[0] + m.side[2];
+  // The centre of the cell, as a parameter of the grown one.
+  const double mid_u = (0.5 + m.side[3]) / grow_u, mid_v = (0.5 + m.side[0]) / grow_v;
+  static constexpr Side kSides[4] = {Side::u0, Side::u1, Side::v0, Side::v1};
+  divide_v_ = collapsed.u0 ? &kSides[0] : collapsed.u1 ? &kSides[1] : nullptr;
+  divide_u_ = collapsed.v0 ? &kSides[2] : collapsed.v1 ? &kSides[3] : nullptr;
+  const double over_u = divide_u_ ? 1 / (collapsed.v0 ? mid_v : 1 - mid_v) : 1;
+  const double over_v = divide_v_ ? 1 / (collapsed.u0 ? mid_u : 1 - mid_u) : 1;
   double jac[2][2];
   for (int r = 0; r < 2; ++r) jac[r][0] = jacobian_[r][0] * grow_u * over_u, jac[r][1] = jacobian_[r][1] * grow_v * over_v;
   const double det = jac[0][0] * jac[1][1] - jac[0][1] * jac[1][0];
   if (!(std::abs(det) > 0)) return false;
-  const double inv[2][2] = {{jac[1][1] / det, -jac[0][1] / det}, {-jac[1][0] / det, jac[0][0] / det}};
+  inverse_[0][0] = jac[1][1] / det, inverse_[0][1] = -jac[0][1] / det;
+  inverse_[1][0] = -jac[1][0] / det, inverse_[1][1] = jac[0][0] / det;
+  if (rational_) {
+    bernstein::multiply(w_, w_, w_power_[0]);
+    bernstein::multiply(w_power_[0], w_, w_power_[1]);
+  }
+  return true;
+}
 
-  if (rational_) bernstein::multiply(w_, w_, ww_);
-  const Range xu = derivative_range(x_, true, for_u, 1), xv = derivative_range(x_, false, for_v, 1);
-  const Range yu = derivative_range(y_, true, for_u, 1), yv = derivative_range(y_, false, for_v, 1);
-  // (I + B) = J J0⁻¹ over the cell.
-  const Range b00 = xu * inv[0][0] + xv * inv[1][0], b01 = xu * inv[0][1] + xv * inv[1][1];
-  const Range b10 = yu * inv[0][0] + yv * inv[1][0], b11 = yu * inv[0][1] + yv * inv[1][1];
+/// Bounds J J0⁻¹ − I over the cell: below 1 the chart is one to one, and |J⁻ᵀ g| <= |J0⁻ᵀ g| / (1 − twist).
+double CellFitter::twist() {
+  const Range xu = derivative_range(x_, true, 1), xv = derivative_range(x_, false, 1);
+  const Range yu = derivative_range(y_, true, 1), yv = derivative_range(y_, false, 1);
+  const Range b00 = xu * inverse_[0][0] + xv * inverse_[1][0], b01 = xu * inverse_[0][1] + xv * inverse_[1][1];
+  const Range b10 = yu * inverse_[0][0] + yv * inverse_[1][0], b11 = yu * inverse_[0][1] + yv * inverse_[1][1];
   const double d0 = std::max(1 - b00.lo, b00.hi - 1), d1 = std::max(1 - b11.lo, b11.hi - 1);
-  const double twist = std::sqrt(d0 * d0 + d1 * d1 + b01.magnitude() * b01.magnitude() + b10.magnitude() * b10.magnitude());
-  if (!(twist <= kMostTwist)) return false;
+  return std::sqrt(d0 * d0 + d1 * d1 + b01.magnitude() * b01.magnitude() + b10.magnitude() * b10.magnitude());
+}
+
+/// Largest |J0⁻ᵀ (∂/∂s, ∂/∂t)| of a net over W^power.
+double CellFitter::gradient_bound(const Net& net, int power) {
+  const Range fu = derivative_range(net, true, power), fv = derivative_range(net, false, power);
+  return std::hypot((fu * inverse_[0][0] + fv * inverse_[1][0]).magnitude(), (fu * inverse_[0][1] + fv * inverse_[1][1]).magnitude());
+}
+
+/// The cubic form of (x,y) that takes up most of what the quadric leaves of F∘S, by least squares on Bernstein coefficients; the
+/// rest stays in cubic_rest_.
+void CellFitter::fit_cubic(QuadricDp& dp) {
+  bernstein::multiply(x_, x_, xx_), bernstein::multiply(x_, y_, xy_), bernstein::multiply(y_, y_, yy_);
+  bernstein::multiply(xx_, x_, cubic_[0]), bernstein::multiply(xx_, y_, cubic_[1]);
+  bernstein::multiply(xy_, y_, cubic_[2]), bernstein::multiply(yy_, y_, cubic_[3]);
+  bernstein::multiply(f_, w_, cubic_rest_);
+  const auto bp = bernstein::binomials(cubic_rest_.p), bq = bernstein::binomials(cubic_rest_.q);
+  double g[4][5] = {};
+  for (int i = 0; i <= cubic_rest_.p; ++i)
+    for (int j = 0; j <= cubic_rest_.q; ++j) {
+      const double s = 1 / (bp[i] * bq[j]), t = cubic_rest_.at(i, j) * s;
+      double e[4];
+      for (int k = 0; k < 4; ++k) e[k] = cubic_[k].at(i, j) * s;
+      for (int k = 0; k < 4; ++k) {
+        g[k][4] += e[k] * t;
+        for (int l = 0; l <= k; ++l) g[k][l] += e[k] * e[l];
+      }
+    }
+  double x[4];
+  solve_cubic(g, x);
+  for (int k = 0; k < 4; ++k) {
+    dp.cubic[k] = x[k];
+    for (std::size_t i = 0; i < cubic_rest_.c.size(); ++i) cubic_rest_.c[i] -= x[k] * cubic_[k].c[i];
+  }
+}
+
+bool CellFitter::certify_normals(double normal_tolerance, double gz, CellFit& out) {
+  QuadricDp& dp = out.dp;
+  const double twisted = twist();
+  if (!(twisted <= kMostTwist)) return false;
   out.quadric_decides = true;
-  const Range fu = derivative_range(f_, true, for_u, 2), fv = derivative_range(f_, false, for_v, 2);
-  const double gx = (fu * inv[0][0] + fv * inv[1][0]).magnitude(), gy = (fu * inv[0][1] + fv * inv[1][1]).magnitude();
   const double ax = std::max(-box_.lo.x, box_.hi.x), ay = std::max(-box_.lo.y, box_.hi.y), az = std::max(-box_.lo.z, box_.hi.z);
-  // From the surface's point to the quadric's, `bound` along z, the quadric's slope −Fx/Fz changes by this much a length.
-  const double fx = std::abs(dp.lambda_u) * ax + std::abs(dp.a) * az, fy = std::abs(dp.lambda_v) * ay + std::abs(dp.b) * az;
-  const double drift = std::hypot(std::abs(dp.a) / gz + std::abs(dp.c) * fx / (gz * gz), std::abs(dp.b) / gz + std::abs(dp.c) * fy / (gz * gz));
-  out.normal_bound = std::hypot(gx, gy) / ((1 - twist) * gz) + out.bound * drift;
+  // From the surface's point to the quadric's, `bound` along z, the drawn slope (C − F)x / Fz changes by this much a length.
+  auto drift = [&] {
+    const double* c = dp.cubic.data();
+    const double cx = 3 * std::abs(c[0]) * ax * ax + 2 * std::abs(c[1]) * ax * ay + std::abs(c[2]) * ay * ay;
+    const double cy = std::abs(c[1]) * ax * ax + 2 * std::abs(c[2]) * ax * ay + 3 * std::abs(c[3]) * ay * ay;
+    const double fx = std::abs(dp.lambda_u) * ax + std::abs(dp.a) * az + cx, fy = std::abs(dp.lambda_v) * ay + std::abs(dp.b) * az + cy;
+    return std::hypot(std::abs(dp.a) / gz + std::abs(dp.c) * fx / (gz * gz), std::abs(dp.b) / gz + std::abs(dp.c) * fy / (gz * gz));
+  };
+  const double over = 1 / ((1 - twisted) * gz);
+  out.normal_bound = gradient_bound(f_, 2) * over + out.bound * drift();
+  if (out.normal_bound <= normal_tolerance) return true;
+  fit_cubic(dp);
+  out.normal_bound = gradient_bound(cubic_rest_, 3) * over + out.bound * drift();
   return out.normal_bound <= normal_tolerance;
 }
 
-CellFit CellFitter::fit(const BezierPatch& cell, double tolerance, double normal_tolerance) {
+CellFit CellFitter::fit(const BezierPatch& cell, double tolerance, double normal_tolerance, const CellMargins& wanted) {
   CellFit out;
   const CollapsedSides collapsed = collapsed_sides(cell);
-  const BezierPatch grown = grown_patch(cell, collapsed);
+  out.margins = wanted;
+  const bool point[4] = {collapsed.v0, collapsed.u1, collapsed.v1, collapsed.u0};
+  for (int k = 0; k < 4; ++k)
+    if (point[k]) out.margins.side[k] = 0;
+  const BezierPatch grown = grown_patch(cell, out.margins);
   auto longer_side = [&] {
     double u = 0, v = 0;
     for (int i = 0; i <= cell.degree_u; ++i)
@@ -325,7 +403,7 @@ CellFit CellFitter::fit(const BezierPatch& cell, double tolerance, double normal
   load(grown, out.dp);
   if (!(least_w_ > 0)) return out;
   fit_third_order(tolerance, out.dp);
-  out.valid = certify(collapsed, tolerance, normal_tolerance, out);
+  out.valid = set_up_normals(collapsed, out.margins) && certify(tolerance, normal_tolerance, out);
   if (!out.valid) {
     // Where the quadric is not close enough, along the parameter in which F∘S varies more; where the cell is bent or twisted too
     // much to be looked at that way, along its longer side.

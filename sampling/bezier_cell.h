@@ -8,9 +8,13 @@
 
 namespace dupin {
 
-/// A cell is a patch over its own [0,1]². Its certificate holds on the cell grown by kCellMargin of its width on every side
-/// (not across a collapsed one): neighbouring DPs overlap there, so that no crack opens between their sheets.
+/// A cell is a patch over its own [0,1]². Its certificate holds on the cell grown by a part of its width on every side (not across
+/// a collapsed one): neighbouring DPs overlap there, so that no crack opens between their sheets.
 inline constexpr double kCellMargin = 0.04;
+/// For the sides v = 0, u = 1, v = 1, u = 0.
+struct CellMargins {
+  double side[4] = {kCellMargin, kCellMargin, kCellMargin, kCellMargin};
+};
 
 /// Which sides of a patch are a single point.
 struct CollapsedSides {
@@ -26,6 +30,8 @@ struct CellFit {
   double bound = 0;       ///< largest distance between quadric and surface, along the DP's normal
   double normal_bound = 0;
   QuadricDp dp;           ///< frame, quadric, z-range
+  CellMargins margins;    ///< as asked for, 0 at collapsed sides
+  double margin_needed[4] = {0, 0, 0, 0};  ///< for whoever makes the footprint: what its sides would take
   /// The grown cell's poles along its border, in the DP's (x,y): sides v = 0, u = 1, v = 1, u = 0; the cell's own likewise.
   std::vector<Vec2> border[4], grown_border[4];
 };
@@ -34,29 +40,34 @@ struct CellFit {
 class CellFitter {
  public:
   /// Stops early, with valid = false, once a bound is known to exceed the tolerances.
-  CellFit fit(const BezierPatch& cell, double tolerance, double normal_tolerance);
+  CellFit fit(const BezierPatch& cell, double tolerance, double normal_tolerance, const CellMargins& margins = {});
 
  private:
   bool place(const BezierPatch& cell, CellFit& out);
   void load(const BezierPatch& grown, const QuadricDp& dp);
   void fit_third_order(double tolerance, QuadricDp& dp);
-  bool certify(const CollapsedSides& collapsed, double tolerance, double normal_tolerance, CellFit& out);
-  bool certify_normals(const CollapsedSides& collapsed, double normal_tolerance, double gz, CellFit& out);
-  bernstein::Range derivative_range(const bernstein::Net& numerator, bool along_u, const bernstein::Side* collapsed, int power);
+  bool set_up_normals(const CollapsedSides& collapsed, const CellMargins& margins);
+  bool certify(double tolerance, double normal_tolerance, CellFit& out);
+  bool certify_normals(double normal_tolerance, double gz, CellFit& out);
+  void fit_cubic(QuadricDp& dp);
+  double twist();
+  double gradient_bound(const bernstein::Net& net, int power);
+  bernstein::Range derivative_range(const bernstein::Net& numerator, bool along_u, int power);
 
   bernstein::Net x_, y_, z_, w_;                    // local homogeneous coordinates
   bernstein::Net f_, xz_, yz_, zz_;                 // F's numerator and its parts
-  bernstein::Net ww_, d_, dw_, shifted_, tmp_;
+  bernstein::Net xx_, xy_, yy_, cubic_[4], cubic_rest_;
+  bernstein::Net w_power_[2], d_, dw_, shifted_, tmp_;
   double least_w_ = 1, most_w_ = 1;
   bool rational_ = false;
   Box3 box_;                                        // of the grown cell, local
-  double jacobian_[2][2] = {};                      // ∂(x,y)/∂(s,t) at the centre
+  double jacobian_[2][2] = {}, inverse_[2][2] = {}; // ∂(x,y)/∂(s,t) at the centre; inverse in the grown cell's parameters
+  const bernstein::Side *divide_u_ = nullptr, *divide_v_ = nullptr;  // what ∂/∂u, ∂/∂v are divided by
 };
 
 /// Sub-cells by de Casteljau at one half.
 void split_patch(const BezierPatch& patch, bool along_u, BezierPatch& first, BezierPatch& second);
-/// Grown by kCellMargin, except across collapsed sides.
-BezierPatch grown_patch(const BezierPatch& patch, const CollapsedSides& collapsed);
+BezierPatch grown_patch(const BezierPatch& patch, const CellMargins& margins);
 /// Box of the dehomogenised poles.
 Box3 poles_box(const BezierPatch& patch);
 

@@ -15,6 +15,9 @@ constexpr int kMaxDepth = 36;
 /// Cells with a trim are drawn finer than the tolerance asks, in position: two faces' sheets meet there.
 constexpr double kTrimTolerance = 0.5;
 
+/// A cell is grown by at most this part of itself to make room for its curved sides' chords.
+constexpr double kMostMargin = 0.35;
+
 struct Cell {
   BezierPatch patch;
   Box2 own{{0, 0}, {1, 1}};  ///< in the root patch's parameters
@@ -75,24 +78,29 @@ class PatchFace {
             {patch_to_surface_u(root_, own.hi.x), patch_to_surface_v(root_, own.hi.y)}};
   }
 
-  /// Trims near the cell, seen across the seam too.
-  void filter_arcs(Cell& cell, const Box2& uv) const {
-    const Vec2 margin = uv.size() * (1.5 * kCellMargin);
+  /// Whether the trim may come into the cell grown by a part of its size, seen across the seam too.
+  bool is_near(const FaceArc& arc, const Box2& uv, double part) const {
+    const Vec2 margin = uv.size() * part;
     const Box2 near{uv.lo - margin, uv.hi + margin};
-    std::erase_if(cell.arcs, [&](const FaceArc* arc) {
-      for (int i = -1; i <= 1; ++i)
-        for (int j = -1; j <= 1; ++j) {
-          if ((i != 0 && period_u_ == 0) || (j != 0 && period_v_ == 0)) continue;
-          if (overlap(near, shifted(arc->uv, i * period_u_, j * period_v_))) return false;
-        }
-      return true;
-    });
+    for (int i = -1; i <= 1; ++i)
+      for (int j = -1; j <= 1; ++j) {
+        if ((i != 0 && period_u_ == 0) || (j != 0 && period_v_ == 0)) continue;
+        if (overlap(near, shifted(arc.uv, i * period_u_, j * period_v_))) return true;
+      }
+    return false;
+  }
+
+  /// Keeps the trims that a footprint of the cell may reach; those in the cell itself make it a cut one.
+  void filter_arcs(Cell& cell, const Box2& uv) const {
+    std::erase_if(cell.arcs, [&](const FaceArc* arc) { return !is_near(*arc, uv, 1.5 * kMostMargin); });
+    if (cell.known) return;
+    cell.known = std::none_of(cell.arcs.begin(), cell.arcs.end(), [&](const FaceArc* arc) { return is_near(*arc, uv, 1e-3); });
+    if (cell.known) cell.inside = uv_inside(in_.boundary, uv.center());
   }
 
   void divide(Cell& cell) {
     const Box2 uv = uv_of(cell.own);
     filter_arcs(cell, uv);
-    if (cell.arcs.empty() && !cell.known) cell.known = true, cell.inside = uv_inside(in_.boundary, uv.center());
     if (cell.known && !cell.inside) return;
     const Box3 box = poles_box(cell.patch);
     const double allowed = in_.tolerance.at(box);
@@ -102,6 +110,10 @@ class PatchFace {
     const bool speck = box.diagonal() <= allowed || cell.depth >= kMaxDepth;
     CellFit fit = fitter_.fit(cell.patch, tolerance - fitted_position_, in_.normal_tolerance - fitted_normal_);
     if (fit.valid && emit(cell, uv, fit)) return;
+    if (fit.valid && widen_margins(fit)) {
+      CellFit wider = fitter_.fit(cell.patch, tolerance - fitted_position_, in_.normal_tolerance - fitted_normal_, fit.margins);
+      if (wider.valid && emit(cell, uv, wider)) return;
+    }
     if (speck) return emit_speck(cell, uv, box, fit);
     split(cell, fit.split_u);
   }
@@ -146,6 +158,19 @@ class PatchFace {
     }
   }
 
+  /// Where a curved side asked for more room than the certificate had: as much as it needs, if that is not too much.
+  static bool widen_margins(CellFit& fit) {
+    bool wider = false;
+    for (int k = 0; k < 4; ++k) {
+      const double needed = 1.1 * fit.margin_needed[k];
+      if (needed > kMostMargin) return false;
+      if (needed <= fit.margins.side[k]) continue;
+      fit.margins.side[k] = needed;
+      wider = true;
+    }
+    return wider;
+  }
+
   struct SideLine {
     Vec2 point, out;  ///< out: unit, outwards
   };
@@ -156,6 +181,7 @@ class PatchFace {
     const Vec2 c[4] = {fit.border[0].front(), fit.border[1].front(), fit.border[2].back(), fit.border[3].back()};
     const double size = std::max(length(c[2] - c[0]), length(c[3] - c[1]));
     SideLine lines[4];
+    bool reached = true;
     for (int k = 0; k < 4; ++k) {
       const Vec2 a = c[k], d = c[(k + 1) % 4] - a;
       const bool point = length(d) <= 1e-9 * size;
@@ -167,13 +193,18 @@ class PatchFace {
       for (Vec2 p : fit.grown_border[k]) reach = std::min(reach, dot(p - a, out));
       const double wanted = 4 * fit.bound + 1e-4 * size;
       double overlap_width = wanted;
+      fit.margin_needed[k] = 0;
       if (point) overlap_width = 0;
       else if (!on_border(k, uv)) {
-        if (reach - bulge < fit.bound + 1e-5 * size) return false;
+        double own = 0;
+        for (Vec2 p : fit.border[k]) own = std::min(own, dot(p - a, out));
+        fit.margin_needed[k] = fit.margins.side[k] * (bulge + wanted - own) / std::max(reach - own, 1e-3 * size * fit.margins.side[k]);
+        if (reach - bulge < fit.bound + 1e-5 * size) reached = false;
         overlap_width = std::min(wanted, reach - bulge);
       }
       lines[k] = {a + out * (bulge + overlap_width), out};
     }
+    if (!reached) return false;
     for (int k = 0; k < 4; ++k)
       if (!meet(lines[(k + 3) % 4], lines[k], fit.dp.footprint[k])) return false;
     return is_convex(fit.dp.footprint, size);
@@ -197,7 +228,8 @@ class PatchFace {
     ChartPieces pieces;
     ChartProjector chart(dp);
     for (const FaceArc* arc : cell.arcs) chart.add(*arc, pieces);
-    if (cell.arcs.empty() || cell.known) return count(dp, {}, {}, true);
+    if (cell.known && pieces.empty()) return count(dp, {}, {}, cell.inside);
+    if (cell.known) return count(dp, pieces, chart.to_chart(point_at(cell.patch, 0.5, 0.5)), cell.inside);
     if (pieces.count() > kMaxPieces && cell.depth < kMaxDepth / 2) return false;
     Vec2 best{}, best_uv = uv.center();
     double most = -1;

@@ -58,6 +58,9 @@ struct QuadricDp {
   Vec3 u{1, 0, 0}, v{0, 1, 0};    ///< unit, perpendicular
   double lambda_u = 0, lambda_v = 0;
   double a = 0, b = 0, c = 0;
+  /// Third-order terms of the shading normal alone: the surface drawn is F = 0, the normal drawn there is
+  /// ∇F − ∇C with C = c0·x³ + c1·x²y + c2·xy² + c3·y³. All 0 where the quadric's own normal is close enough.
+  std::array<double, 4> cubic{0, 0, 0, 0};
   std::array<Vec2, 4> footprint;  ///< convex, counter-clockwise; a corner may be repeated
   double z_lo = 0, z_hi = 0;
   /// Bits 0–3: footprint side i (from corner i to i+1) is a feature edge; bit 4: z_lo, bit 5: z_hi.
@@ -87,6 +90,13 @@ inline double quadric_value(const QuadricDp& d, const Vec3& p) {
 }
 inline Vec3 quadric_gradient(const QuadricDp& d, const Vec3& p) {
   return {-d.lambda_u * p.x - d.a * p.z, -d.lambda_v * p.y - d.b * p.z, 1 - d.a * p.x - d.b * p.y - d.c * p.z};
+}
+
+/// The normal drawn at a point of the DP's frame, towards the side of n; not normalised.
+inline Vec3 drawn_normal(const QuadricDp& d, const Vec3& p) {
+  const auto& c = d.cubic;
+  return quadric_gradient(d, p) - Vec3{3 * c[0] * p.x * p.x + 2 * c[1] * p.x * p.y + c[2] * p.y * p.y,
+                                       c[1] * p.x * p.x + 2 * c[2] * p.x * p.y + 3 * c[3] * p.y * p.y, 0};
 }
 
 /// One part's DPs and the pieces that bound them.

@@ -50,7 +50,7 @@ void compare(const BezierPatch& cell, const CellFit& fit, double lo_s, double lo
       worst.position = std::max(worst.position, std::abs(z - dot(d, n)) / fit.bound);
       const Vec3 normal = normalized(cross(su, sv));
       if (length(normal) < 0.5) continue;
-      const Vec3 g = quadric_gradient(dp, {xy.x, xy.y, z});
+      const Vec3 g = drawn_normal(dp, {xy.x, xy.y, z});
       const Vec3 drawn = normalized(dp.u * g.x + dp.v * g.y + n * g.z);
       const double angle = std::asin(std::min(1.0, length(cross(drawn, normal))));
       worst.normal = std::max(worst.normal, (angle - 1e-8) / fit.normal_bound);

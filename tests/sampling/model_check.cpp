@@ -171,7 +171,7 @@ void check_bounds(const Part& part, const PartDps& dps, const Outline& outline, 
         const SurfaceJet jet = evaluate(surface, uv.x, uv.y, 1);
         report.worst_position = std::max(report.worst_position, (distance(p, jet.p) - rounding) / (dp.bound + rounding));
         const Vec3 n = normalized(cross(jet.pu, jet.pv)) * (face.reversed ? -1.0 : 1.0);
-        const Vec3 g = quadric_gradient(dp, l);
+        const Vec3 g = drawn_normal(dp, l);
         const Vec3 drawn = normalized(dp.u * g.x + dp.v * g.y + dp.n() * g.z) * (dp.flipped ? -1.0 : 1.0);
         if (!dp.speck && length(n) > 0.5) {
           const double angle = std::atan2(length(cross(n, drawn)), dot(n, drawn));
