@@ -11,6 +11,7 @@ constexpr int kNewtonSteps = 30;
 constexpr int kFirstPieces = 8;
 constexpr int kMaxDepth = 10;       // halvings of a first piece
 constexpr std::size_t kMaxPieces = 600;
+constexpr double kShortestStep = 1e-5;  // of a first piece
 constexpr int kChecksPerPiece = 3;  // inside each piece
 
 template <class V>
@@ -145,10 +146,53 @@ Vec2 newton(const Surface& surface, const Box2& domain, const Vec3& p, Vec2 q) {
   return q;
 }
 
+// In closed form, with u in (-π, π], for the analytic kinds.
+std::optional<Vec2> exact_parameters(const Surface& surface, const Vec3& p) {
+  if (const auto* s = std::get_if<Plane>(&surface.geometry)) {
+    const Vec3 q = s->frame.to_local(p);
+    return Vec2{q.x, q.y};
+  }
+  if (const auto* s = std::get_if<Cylinder>(&surface.geometry)) {
+    const Vec3 q = s->frame.to_local(p);
+    return Vec2{std::atan2(q.y, q.x), q.z};
+  }
+  if (const auto* s = std::get_if<Sphere>(&surface.geometry)) {
+    const Vec3 q = s->frame.to_local(p);
+    return Vec2{std::atan2(q.y, q.x), std::atan2(q.z, std::hypot(q.x, q.y))};
+  }
+  if (const auto* s = std::get_if<Torus>(&surface.geometry)) {
+    const Vec3 q = s->frame.to_local(p);
+    return Vec2{std::atan2(q.y, q.x), std::atan2(q.z, std::hypot(q.x, q.y) - s->major)};
+  }
+  if (const auto* s = std::get_if<Cone>(&surface.geometry)) {
+    const Vec3 q = s->frame.to_local(p);
+    const double sine = std::sin(s->half_angle), cosine = std::cos(s->half_angle);
+    // Beyond the apex the generator through p is the opposite one.
+    const double side = q.z * sine + s->radius * cosine < 0 ? -1 : 1, r = side * std::hypot(q.x, q.y);
+    return Vec2{std::atan2(side * q.y, side * q.x), (r - s->radius) * sine + q.z * cosine};
+  }
+  return std::nullopt;
+}
+
+Vec2 nearest_turn(const Surface& surface, Vec2 q, Vec2 near) {
+  const double turn_u = period_u(surface), turn_v = period_v(surface);
+  if (turn_u > 0) q.x += std::round((near.x - q.x) / turn_u) * turn_u;
+  if (turn_v > 0) q.y += std::round((near.y - q.y) / turn_v) * turn_v;
+  return q;
+}
+
+// Whether a step in parameters is so long that it may have lost a turn.
+bool too_far(const Surface& surface, Vec2 step) {
+  const double turn_u = period_u(surface), turn_v = period_v(surface);
+  return (turn_u > 0 && std::abs(step.x) > turn_u / 6) || (turn_v > 0 && std::abs(step.y) > turn_v / 6);
+}
+
 }  // namespace
 
 Vec2 project(const Surface& surface, const Box2& domain, const Vec3& p, const Vec2* near) {
-  if (near) return newton(surface, domain, p, *near);
+  if (const std::optional<Vec2> exact = exact_parameters(surface, p))
+    return near ? nearest_turn(surface, *exact, *near) : *exact;
+  if (near) return nearest_turn(surface, newton(surface, domain, p, *near), *near);
   Vec2 best = domain.center();
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= kGrid; ++i)
@@ -172,17 +216,27 @@ std::optional<Curve2> fit_pcurve(const Surface& surface, const Box2& domain, con
   std::vector<Node<Vec2>> coarse(parameters.size());
   const std::size_t middle = parameters.size() / 2;
   coarse[middle] = node_near(parameters[middle], nullptr);
+  // Small steps, smaller where the parameters move fast, keep to the same turn of a periodic surface.
   const auto march = [&](std::size_t from, std::size_t to) {
-    // Linear extrapolation in small steps keeps to the same turn of a periodic surface.
     Node<Vec2> at = coarse[from];
-    for (int i = 1; i <= 8; ++i) {
-      const double t = parameters[from] + (parameters[to] - parameters[from]) * i / 8;
+    const double whole = parameters[to] - parameters[from];
+    double done = 0, step = 1.0 / 8;
+    while (done < 1) {
+      step = std::min(step, 1 - done);
+      const double t = parameters[from] + whole * (done + step);
       const Vec2 guess = clamp_to(surface, domain, at.point + at.tangent * (t - at.t));
       const Node<Vec2> ahead = node_near(t, &guess), stay = node_near(t, &at.point);
       const Vec3 p = point_at(curve, t);
       const auto miss = [&](const Node<Vec2>& n) { return distance(point_at(surface, n.point.x, n.point.y), p); };
-      at = miss(stay) < 0.5 * miss(ahead) - 1e-12 ? stay : ahead;
+      const bool extrapolated = !(miss(stay) < 0.5 * miss(ahead) - 1e-12) && !too_far(surface, ahead.point - at.point);
+      const Node<Vec2>& next = extrapolated ? ahead : stay;
+      if (too_far(surface, next.point - at.point) && step > kShortestStep) {
+        step /= 4;
+        continue;
+      }
+      at = next, done += step, step *= 2;
     }
+    at.t = parameters[to];
     coarse[to] = at;
   };
   for (std::size_t i = middle; i + 1 < coarse.size(); ++i) march(i, i + 1);

@@ -21,6 +21,8 @@ namespace {
 constexpr double kAgreement = 1e-6;
 // What a fitted pcurve may add.
 constexpr double kFit = 1e-8;
+// A pcurve that is further off says nothing, not even on which side of a seam its edge lies.
+constexpr double kWrong = 1e-3;
 // Loops with larger gaps than this part of the piece's size are no loops.
 constexpr double kLargestGap = 1e-3;
 
@@ -70,13 +72,18 @@ class FaceBuilder {
     const StoredPcurve stored = stored_pcurve(wire_edge.shape, task_.shape);
     use.trim.seam = stored.seam;
     std::optional<Curve2> pcurve = matched(stored, edge);
+    std::optional<Curve2> file = pcurve;
     double deviation = pcurve && edge.curve ? deviation_of(*pcurve, edge) : 0;
+    if (!(deviation <= kWrong * size_)) file.reset();
     if (edge.curve && (!pcurve || !(deviation <= kAgreement * size_))) refit(edge, stored.seam, pcurve, deviation);
     if (!pcurve) {
       if (!edge.curve) return std::nullopt;  // a collapsed side: the loop bridges it
       return skip("an edge's curve could not be laid onto its surface"), std::nullopt;
     }
     use.trim.pcurve = std::move(*pcurve);
+    const Curve2& known = file ? *file : use.trim.pcurve;
+    use.file_start = point_at(known, use.trim.reversed ? edge.t1 : edge.t0);
+    use.file_end = point_at(known, use.trim.reversed ? edge.t0 : edge.t1);
     result_.deviations.emplace_back(use.trim.edge, deviation);
     return use;
   }
@@ -113,11 +120,18 @@ class FaceBuilder {
       if (domain_.empty()) domain_ = search_domain(surface_, edges_, task_.wires);
       fitted = fit_pcurve(surface_, domain_, *edge.curve, edge.t0, edge.t1, kFit * size_);
     }
-    if (!fitted) return;
+    if (!fitted || (pcurve && passes_elsewhere(*fitted, *pcurve, edge))) return;
     const double reached = deviation_of(*fitted, edge);
     if (pcurve && !(reached < 0.5 * deviation)) return;
     if (pcurve) ++result_.refitted;
     pcurve = std::move(fitted), deviation = reached;
+  }
+
+  // Past a pole a projection may take the other way round than the file's curve, which then bounds another region.
+  bool passes_elsewhere(const Curve2& a, const Curve2& b, const Edge& edge) const {
+    const Vec2 d = point_at(a, edge.t1) - point_at(a, edge.t0) - (point_at(b, edge.t1) - point_at(b, edge.t0));
+    const double turn_u = period_u(surface_), turn_v = period_v(surface_);
+    return (turn_u > 0 && std::abs(d.x) > turn_u / 2) || (turn_v > 0 && std::abs(d.y) > turn_v / 2);
   }
 
   void skip(const char* reason) {

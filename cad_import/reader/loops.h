@@ -16,6 +16,7 @@ struct EdgeUse {
   double t0 = 0, t1 = 0;
   int from = -1, to = -1;
   double tolerance = 0;  ///< the edge's and its vertices'
+  Vec2 file_start, file_end;  ///< where the file's own pcurve runs from and to: it knows on which side of a seam
   Vec2 start() const { return point_at(trim.pcurve, trim.reversed ? t1 : t0); }
   Vec2 end() const { return point_at(trim.pcurve, trim.reversed ? t0 : t1); }
 };
