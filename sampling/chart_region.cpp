@@ -121,11 +121,16 @@ void ChartProjector::add_on_sheet(const ConicArc3& arc, bool feature, ChartPiece
     out.arcs.push_back(piece);
 }
 
-void ChartProjector::add(const FaceArc& arc, ChartPieces& out) {
-  if (single_sheet_) return add_on_sheet(arc.arc, arc.feature, out);
-  clipped_.clear();
-  clip_to_half_space(arc.arc, sheet_normal_, sheet_offset_, clipped_);
-  for (const ConicArc3& part : clipped_) add_on_sheet(part, arc.feature, out);
+bool ChartProjector::add(const FaceArc& arc, ChartPieces& out) {
+  const std::size_t before = out.count();
+  if (single_sheet_) {
+    add_on_sheet(arc.arc, arc.feature, out);
+  } else {
+    clipped_.clear();
+    clip_to_half_space(arc.arc, sheet_normal_, sheet_offset_, clipped_);
+    for (const ConicArc3& part : clipped_) add_on_sheet(part, arc.feature, out);
+  }
+  return out.count() > before;
 }
 
 void ChartProjector::add(const WholeEllipse& ellipse, ChartPieces& out) const {

@@ -29,7 +29,8 @@ struct ChartPieces {
 class ChartProjector {
  public:
   explicit ChartProjector(const QuadricDp& dp);
-  void add(const FaceArc& arc, ChartPieces& out);
+  /// Whether anything of it was added.
+  bool add(const FaceArc& arc, ChartPieces& out);
   void add(const WholeEllipse& ellipse, ChartPieces& out) const;
   Vec2 to_chart(const Vec3& p) const;
   Vec3 to_local(const Vec3& p) const;

@@ -203,9 +203,35 @@ class CurvedQuadric {
     ChartProjector chart(dp);
     ChartPieces pieces;
     for (const FaceLoop& loop : in_.boundary.loops)
-      for (const FaceArc& arc : loop.arcs) chart.add(arc, pieces);
+      for (const FaceArc& arc : loop.arcs)
+        if (chart.add(arc, pieces)) dp.bound = std::max(dp.bound, arc.deviation);
     const auto [reference, state] = reference_in(uv, chart, pieces);
+    if (pieces.count() <= kMaxPieces) narrow_to_sector(dp, uv);
     return emit_exact_dp(dp, pieces, reference, state, out_);
+  }
+
+  /// A cone's sector in its chart lies between two straight generators: the rectangle around it reaches, at its narrow end, over the
+  /// edge of the sheet.
+  void narrow_to_sector(QuadricDp& dp, const Box2& uv) const {
+    if (!std::holds_alternative<Cone>(in_.surface.geometry)) return;
+    const double y0 = dp.footprint[0].y, y1 = dp.footprint[2].y;
+    double x[2][2];  // [generator][lower, upper end]
+    for (int g = 0; g < 2; ++g) {
+      Vec2 a[2];
+      for (int k = 0; k < 2; ++k) {
+        const Vec3 d = point_at(in_.surface, g ? uv.hi.x : uv.lo.x, k ? uv.hi.y : uv.lo.y) - dp.origin;
+        a[k] = {dot(d, dp.u), dot(d, dp.v)};
+      }
+      const Vec2 along = a[1] - a[0];
+      if (!(std::abs(along.y) > 1e-6 * length(along))) return;
+      x[g][0] = a[0].x + along.x * (y0 - a[0].y) / along.y, x[g][1] = a[0].x + along.x * (y1 - a[0].y) / along.y;
+    }
+    const double margin = 1e-3 * (dp.footprint[1].x - dp.footprint[0].x);
+    double lo[2], hi[2];
+    for (int k = 0; k < 2; ++k) lo[k] = std::min(x[0][k], x[1][k]) - margin, hi[k] = std::max(x[0][k], x[1][k]) + margin;
+    const bool crossed = (x[0][0] < x[1][0]) != (x[0][1] < x[1][1]);
+    if (crossed) return;  // the apex is within: the rectangle ends there
+    dp.footprint = {Vec2{lo[0], y0}, Vec2{hi[0], y0}, Vec2{hi[1], y1}, Vec2{lo[1], y1}};
   }
 
   /// A point of the chart, as far from the trims as a few tries give, and whether it is inside the face.
@@ -271,7 +297,8 @@ class CurvedQuadric {
     ChartProjector chart(dp);
     ChartPieces pieces;
     for (const FaceLoop& loop : in_.boundary.loops)
-      for (const FaceArc& arc : loop.arcs) chart.add(arc, pieces);
+      for (const FaceArc& arc : loop.arcs)
+        if (chart.add(arc, pieces)) dp.bound = std::max(dp.bound, arc.deviation);
     Vec2 best{};
     double most = -1;
     for (double fy : {0.03, 0.41, -0.37, 0.2, -0.22})

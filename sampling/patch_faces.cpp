@@ -224,10 +224,14 @@ class PatchFace {
     return true;
   }
 
-  bool emit_region(const Cell& cell, const Box2& uv, const QuadricDp& dp) {
+  bool emit_region(const Cell& cell, const Box2& uv, QuadricDp dp) {
     ChartPieces pieces;
     ChartProjector chart(dp);
-    for (const FaceArc* arc : cell.arcs) chart.add(*arc, pieces);
+    double deviation = 0;
+    for (const FaceArc* arc : cell.arcs)
+      if (chart.add(*arc, pieces)) deviation = std::max(deviation, arc->deviation);
+    // Where the face ends, by as much as its edge is off, points may lie beyond the surface itself.
+    dp.bound = std::hypot(dp.bound, deviation);
     if (cell.known && pieces.empty()) return count(dp, {}, {}, cell.inside);
     if (cell.known) return count(dp, pieces, chart.to_chart(point_at(cell.patch, 0.5, 0.5)), cell.inside);
     if (pieces.count() > kMaxPieces && cell.depth < kMaxDepth / 2) return false;

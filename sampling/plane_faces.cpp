@@ -197,7 +197,8 @@ int make_plane_face(const QuadricFaceInput& in, PartDps& out) {
     if (i == outer && outer_is_footprint) continue;
     if (loops[i].whole_ellipse) chart.add(loops[i].ellipse, pieces);
     else
-      for (const FaceArc& arc : loops[i].arcs) chart.add(arc, pieces);
+      for (const FaceArc& arc : loops[i].arcs)
+        if (chart.add(arc, pieces)) dp.bound = std::max(dp.bound, arc.deviation);
   }
   // Beyond the outer loop, where nothing is inside; without that loop's pieces everything there is.
   const Vec2 reference = box.lo - box.size() * 0.0137;

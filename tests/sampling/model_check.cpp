@@ -164,7 +164,7 @@ void check_bounds(const Part& part, const PartDps& dps, const Outline& outline, 
             if (d < least) least = d, best = q;
           }
         uv = best;
-        if (!nearest(surface, p, uv, grown(dp.cell, 0.3))) {
+        if (!nearest(surface, p, uv, grown(dp.cell, 1.0))) {
           ++report.unresolved;
           continue;
         }
