@@ -33,7 +33,8 @@ Status Renderer::Impl::fill_slots() {
   if (count == 0) return {};
   if (count * 12 > static_cast<std::size_t>(max_texels))
     return {StatusCode::limit, "more primitives in view than this OpenGL context's texture buffers can hold"};
-  slots_.reserve(count * kSlotBytes, GL_DYNAMIC_COPY);
+  // Fresh storage every pass: a driver that rasterises later (llvmpipe) may still be reading the last pass's slots.
+  slots_.assign(nullptr, count * kSlotBytes, GL_STREAM_COPY);
   ProgramText text{{"prepare.vert"}, {}, {}, {}, {}};
   text.feedback.assign(std::begin(kSlotOutputs), std::end(kSlotOutputs));
   const auto prepare = program("prepare", text);
