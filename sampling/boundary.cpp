@@ -107,7 +107,7 @@ void append_trim(const Part& part, const Trim& trim, const std::vector<ArcChain>
   }
   for (std::size_t k = 0; k < arcs.size(); ++k) {
     const ConicArc3& arc = arcs[trim.reversed ? arcs.size() - 1 - k : k];
-    FaceArc face_arc{trim.reversed ? reversed(arc) : arc, !edge.smooth && !trim.seam, chains[trim.edge].deviation, {}};
+    FaceArc face_arc{trim.reversed ? reversed(arc) : arc, !edge.smooth && !trim.seam, {}};
     if (with_uv) flatten(trim, arc.t0, arc.t1, trim.reversed, polygon, face_arc.uv);
     if (!trim.seam) loop.arcs.push_back(face_arc);
   }

@@ -15,7 +15,6 @@ std::vector<ArcChain> part_edge_chains(const Part& part, const LocalTolerance& t
 struct FaceArc {
   ConicArc3 arc;
   bool feature = false;  ///< drawn as an edge line
-  double deviation = 0;  ///< of its edge's chain from the curve
   Box2 uv;               ///< contains the pcurve over the arc
 };
 /// A loop that is one whole circle or ellipse: center + cos t·x + sin t·y.

@@ -154,7 +154,7 @@ class SplineFitter {
     double line = 0;
     for (const BezierCurve3& s : segments) line = std::max(line, distance_from_chord(s, p0, p2));
     if (line <= std::max(tolerance * 0.1, box.diagonal() * 1e-9) || (line <= tolerance && std::isinf(tolerance)))
-      return push(line_arc(p0, p2, t0, t1), line);
+      return push(line_arc(p0, p2, t0, t1), std::isinf(tolerance) ? 0 : line);
     ConicArc3 conic;
     if (segments.size() == 1 && exact_conic(segments[0], conic)) return push(conic, 0);
     if (segments.size() == 1 && depth >= kMaxDepth) return push(line_arc(p0, p2, t0, t1), line);
@@ -166,13 +166,14 @@ class SplineFitter {
       deviation = std::max(deviation, difference_bound(s, q));
       if (deviation > tolerance) break;
     }
-    if (deviation <= tolerance) return push({p0, q.p1, p2, 1, false, t0, t1}, deviation);
+    if (deviation <= tolerance) return push({p0, q.p1, p2, 1, false, t0, t1}, std::isinf(tolerance) ? 0 : deviation);
     split(segments, depth);
   }
 
  private:
   void push(const ConicArc3& arc, double deviation) {
     chain_.arcs.push_back(arc);
+    chain_.arcs.back().deviation = deviation;
     if (chain_.arcs.size() > 1) chain_.arcs.back().p0 = chain_.arcs[chain_.arcs.size() - 2].p2;
     chain_.deviation = std::max(chain_.deviation, deviation);
   }
@@ -210,9 +211,10 @@ void append_sampled(const Curve3& curve, double t0, double t1, const LocalTolera
     deviation = std::max(deviation, distance(p, q.blossom(t, t)));
   }
   // The largest of seven samples of a cubic error is at least 0.9 of the largest.
-  if (deviation * 1.25 <= tolerance(box) || depth >= kMaxDepth) {
-    chain.arcs.push_back({chain.arcs.empty() ? p0 : chain.arcs.back().p2, q.p1, p2, 1, false, t0, t1});
-    chain.deviation = std::max(chain.deviation, deviation * 1.25);
+  const double allowed = tolerance(box);
+  if (deviation * 1.25 <= allowed || depth >= kMaxDepth) {
+    chain.arcs.push_back({chain.arcs.empty() ? p0 : chain.arcs.back().p2, q.p1, p2, 1, false, t0, t1, std::isinf(allowed) ? 0 : deviation * 1.25});
+    chain.deviation = std::max(chain.deviation, chain.arcs.back().deviation);
     return;
   }
   append_sampled(curve, t0, middle, tolerance, depth + 1, chain);
@@ -246,7 +248,7 @@ ConicArc3 sub_arc(const ConicArc3& arc, double s0, double s1) {
   const double m0 = (1 - s0) * (1 - s1), m1 = s0 * (1 - s1) + s1 * (1 - s0), m2 = s0 * s1;
   const Vec3 b = arc.p0 * m0 + arc.p1 * (m1 * arc.w) + arc.p2 * m2;
   const double bw = m0 + m1 * arc.w + m2;
-  return {s0 == 0 ? arc.p0 : a.p / a.w, b / bw, s1 == 1 ? arc.p2 : c.p / c.w, bw / std::sqrt(a.w * c.w), false, arc.t0, arc.t1};
+  return {s0 == 0 ? arc.p0 : a.p / a.w, b / bw, s1 == 1 ? arc.p2 : c.p / c.w, bw / std::sqrt(a.w * c.w), false, arc.t0, arc.t1, arc.deviation};
 }
 
 Box3 bounding_box(const ConicArc3& arc) {

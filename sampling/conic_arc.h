@@ -17,6 +17,7 @@ struct ConicArc3 {
   double w = 1;
   bool line = false;
   double t0 = 0, t1 = 0;
+  double deviation = 0;  ///< largest distance from the curve; 0 where exact, and where the tolerance was infinite (not in any picture)
 };
 
 /// A point of the arc at its own parameter s in [0,1].
@@ -37,7 +38,7 @@ using LocalTolerance = std::function<double(const Box3&)>;
 /// hyperbolas of more than one piece are checked at sample points. Empty for a degenerate edge.
 struct ArcChain {
   std::vector<ConicArc3> arcs;
-  double deviation = 0;  ///< largest distance between chain and curve
+  double deviation = 0;  ///< the largest of its arcs
 };
 ArcChain approximate_edge(const Edge& edge, const LocalTolerance& tolerance);
 

@@ -204,7 +204,7 @@ class CurvedQuadric {
     ChartPieces pieces;
     for (const FaceLoop& loop : in_.boundary.loops)
       for (const FaceArc& arc : loop.arcs)
-        if (chart.add(arc, pieces)) dp.bound = std::max(dp.bound, arc.deviation);
+        if (chart.add(arc, pieces)) dp.bound = std::max(dp.bound, arc.arc.deviation);
     const auto [reference, state] = reference_in(uv, chart, pieces);
     if (pieces.count() <= kMaxPieces) narrow_to_sector(dp, uv);
     return emit_exact_dp(dp, pieces, reference, state, out_);
@@ -298,7 +298,7 @@ class CurvedQuadric {
     ChartPieces pieces;
     for (const FaceLoop& loop : in_.boundary.loops)
       for (const FaceArc& arc : loop.arcs)
-        if (chart.add(arc, pieces)) dp.bound = std::max(dp.bound, arc.deviation);
+        if (chart.add(arc, pieces)) dp.bound = std::max(dp.bound, arc.arc.deviation);
     Vec2 best{};
     double most = -1;
     for (double fy : {0.03, 0.41, -0.37, 0.2, -0.22})

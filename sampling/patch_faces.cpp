@@ -229,7 +229,7 @@ class PatchFace {
     ChartProjector chart(dp);
     double deviation = 0;
     for (const FaceArc* arc : cell.arcs)
-      if (chart.add(*arc, pieces)) deviation = std::max(deviation, arc->deviation);
+      if (chart.add(*arc, pieces)) deviation = std::max(deviation, arc->arc.deviation);
     // Where the face ends, by as much as its edge is off, points may lie beyond the surface itself.
     dp.bound = std::hypot(dp.bound, deviation);
     if (cell.known && pieces.empty()) return count(dp, {}, {}, cell.inside);

@@ -198,7 +198,7 @@ int make_plane_face(const QuadricFaceInput& in, PartDps& out) {
     if (loops[i].whole_ellipse) chart.add(loops[i].ellipse, pieces);
     else
       for (const FaceArc& arc : loops[i].arcs)
-        if (chart.add(arc, pieces)) dp.bound = std::max(dp.bound, arc.deviation);
+        if (chart.add(arc, pieces)) dp.bound = std::max(dp.bound, arc.arc.deviation);
   }
   // Beyond the outer loop, where nothing is inside; without that loop's pieces everything there is.
   const Vec2 reference = box.lo - box.size() * 0.0137;
