@@ -74,7 +74,8 @@ class FaceBuilder {
     std::optional<Curve2> pcurve = matched(stored, edge);
     std::optional<Curve2> file = pcurve;
     double deviation = pcurve && edge.curve ? deviation_of(*pcurve, edge) : 0;
-    if (!(deviation <= kWrong * size_)) file.reset();
+    use.file_wrong = !(deviation <= kWrong * size_);
+    if (use.file_wrong) file.reset();
     if (edge.curve && (!pcurve || !(deviation <= kAgreement * size_))) refit(edge, stored.seam, pcurve, deviation);
     if (!pcurve) {
       if (!edge.curve) return std::nullopt;  // a collapsed side: the loop bridges it

@@ -82,21 +82,25 @@ class Assembly {
     return use;
   }
 
-  double distance_to(const EdgeUse& use, Vec2 end) const {
-    const Vec2 d = use.file_start - end;
+  double distance_to(const EdgeUse& use, const EdgeUse& before) const {
+    const Vec2 d = use.file_start - before.file_end;
     return metric_(d - whole_periods(d, period_u_, period_v_)) + 1e-3 * metric_(whole_periods(d, period_u_, period_v_));
   }
 
   // The use that begins where the loop now ends: at the same vertex, nearest in parameters. None if the loop
   // has come back to its beginning and nothing goes on from there in parameters either.
   std::size_t best_follower(const std::vector<EdgeUse>& loop) const {
-    const Vec2 end = loop.back().end(), file_end = loop.back().file_end;
+    const Vec2 end = loop.back().end();
     const int vertex = loop.back().to;
     std::size_t best = left_.size();
     double least = std::numeric_limits<double>::infinity();
+    bool certain = !loop.back().file_wrong;
+    for (std::size_t i = 0; i < left_.size(); ++i)
+      if (left_[i].from == vertex && left_[i].file_wrong) certain = false;
     for (std::size_t i = 0; i < left_.size(); ++i) {
       if (vertex < 0 || left_[i].from != vertex) continue;
-      const double d = distance_to(left_[i], file_end);
+      if (!certain) return i;
+      const double d = distance_to(left_[i], loop.back());
       if (d < least) least = d, best = i;
     }
     const bool back = vertex >= 0 && vertex == loop.front().from;

@@ -17,6 +17,7 @@ struct EdgeUse {
   int from = -1, to = -1;
   double tolerance = 0;  ///< the edge's and its vertices'
   Vec2 file_start, file_end;  ///< where the file's own pcurve runs from and to: it knows on which side of a seam
+  bool file_wrong = false;     ///< the file's pcurve lay far off: only the order of the wire is left to go by
   Vec2 start() const { return point_at(trim.pcurve, trim.reversed ? t1 : t0); }
   Vec2 end() const { return point_at(trim.pcurve, trim.reversed ? t0 : t1); }
 };
