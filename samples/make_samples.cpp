@@ -338,16 +338,17 @@ bool write_assembly(const std::string& folder) {
   const TDF_Label half = d.assembly("half coupling");  // above z = 0
   d.place(half, flange_part, gp_Trsf(), "flange");
   d.place(half, shaft_part, moved(0, 0, 1), "shaft");
-  d.place(half, key_part, moved(0, 0, 1), "key");
 
   const TDF_Label coupling = d.assembly("shaft coupling");
   const gp_Trsf lying = turned(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 1, 0)), 90);
   d.place(coupling, half, lying, "right half");
-  d.place(coupling, half, lying * turned(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 1, 0)), 180), "left half");
+  const gp_Trsf other = lying * turned(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 1, 0)), 180);
+  d.place(coupling, half, other, "left half");
+  d.place(coupling, key_part, lying * moved(0, 0, 1), "right key");
+  d.color(d.place(coupling, key_part, other * moved(0, 0, 1), "left key"), kRed);
   for (int i = 0; i < 6; ++i) {
     const gp_Trsf around = turned(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), 60.0 * i);
-    const TDF_Label at = d.place(coupling, fastener, lying * around * moved(34, 0, 0), ("fastener " + std::to_string(i + 1)).c_str());
-    if (i == 0) d.color(at, kRed);
+    d.place(coupling, fastener, lying * around * moved(34, 0, 0), ("fastener " + std::to_string(i + 1)).c_str());
   }
   return d.write(folder + "/assembly.step");
 }

@@ -6,6 +6,7 @@
 #include <TDataStd_Name.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_GraphNode.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 
 #include <map>
@@ -32,7 +33,8 @@ std::string name_of(const TDF_Label& label) {
 bool says_nothing(const std::string& name) {
   static const std::set<std::string> kKinds{"",      "SOLID",     "SHELL",    "COMPOUND", "FACE",
                                             "COMPSOLID", "ASSEMBLY", "SHAPE"};
-  return kKinds.contains(name) || name.starts_with("NAUO") || name.starts_with("=>[") ||
+  const bool number = name.find_first_not_of("0123456789") == std::string::npos;
+  return kKinds.contains(name) || number || name.starts_with("NAUO") || name.starts_with("=>[") ||
          name.starts_with("Open CASCADE STEP translator");
 }
 
@@ -58,6 +60,7 @@ class Walk {
     Affine3 to_world;
     std::string path, component_name;
     std::optional<Color> override_color, inherited_color;
+    std::vector<TDF_Label> components;  ///< from the root down to here
   };
   static constexpr int kMaxDepth = 200;  // an assembly that contains itself
 
@@ -73,6 +76,7 @@ class Walk {
     if (says_nothing(item.part_name) && !says_nothing(place.component_name)) item.part_name = place.component_name;
     item.part_color = color_of(label);
     item.instance_color = place.override_color;
+    if (const auto color = color_in_context(place.components)) item.instance_color = color;
     if (!item.instance_color && !item.part_color) item.instance_color = place.inherited_color;
     item.styles = styles_of(label);
     out_.items.push_back(std::move(item));
@@ -91,12 +95,25 @@ class Walk {
           place.to_world * to_affine(XCAFDoc_ShapeTool::GetLocation(component).Transformation());
       const std::string instance = name_of(component), product = name_of(referred);
       below.component_name = instance;
+      below.components.push_back(component);
       const std::string& name = says_nothing(instance) ? product : instance;
       if (!name.empty()) below.path = place.path.empty() ? name : place.path + "/" + name;
       if (own) below.inherited_color = own;
       if (const auto color = color_of(component)) below.override_color = color;
       visit(referred, below, depth + 1);
     }
+  }
+
+  // A colour that holds for a part only where it is used along this path, or along a lower part of it.
+  std::optional<Color> color_in_context(const std::vector<TDF_Label>& components) const {
+    for (std::size_t first = 0; first + 1 < components.size(); ++first) {
+      TDF_LabelSequence path;
+      for (std::size_t i = first; i < components.size(); ++i) path.Append(components[i]);
+      Handle(XCAFDoc_GraphNode) usage;
+      if (XCAFDoc_ShapeTool::FindSHUO(path, usage) && !usage.IsNull())
+        if (const auto color = color_of(usage->Label())) return color;
+    }
+    return std::nullopt;
   }
 
   std::shared_ptr<const ShapeStyles> styles_of(const TDF_Label& label) {
