@@ -82,6 +82,9 @@ struct WrongUsage {
   std::vector<std::string> arguments;
   const char* says;
 };
+// What CTest calls the case.
+void PrintTo(const WrongUsage& usage, std::ostream* out) { *out << usage.name; }
+
 class Usage : public testing::TestWithParam<WrongUsage> {};
 
 TEST_P(Usage, ExitCodeIsTwo) {
