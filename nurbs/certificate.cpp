@@ -125,7 +125,7 @@ Metric metric_of(const BezierPatch& cell) {
   const HomogeneousTensors t = homogeneous_tensors(cell, frame);
   const std::array<Tensor, 3> n = normal_tensors(t, cell.rational);
   const int p = n[0].p, q = n[0].q;
-  const std::vector<double> bu = binomials(p), bv = binomials(q);
+  const std::span<const double> bu = binomials(p), bv = binomials(q);
   std::vector<double> rows(static_cast<std::size_t>(p) + 1, 0.0), columns(static_cast<std::size_t>(q) + 1, 0.0);
   Vec3 sum;
   for (int i = 0; i <= p; ++i)

@@ -27,7 +27,7 @@ using BoundCell = std::function<CellBounds(const BezierPatch&)>;
 /// Splits the patch until `bound` is within `limit` on every cell, into at most kCertificateCells; empty if that is not reached.
 /// Cells with |Su × Sv| below 1e-3 of the patch's largest need only meet the distance.
 std::optional<Deviation> certify(const BezierPatch& patch, const Deviation& limit, const BoundCell& bound);
-inline constexpr int kCertificateCells = 1024;
+inline constexpr int kCertificateCells = 128;
 
 /// The bounds for an analytic shape: of the implicit polynomial along the cell, divided by its gradient.
 CellBounds shape_bounds(const Surface& shape, const BezierPatch& cell);

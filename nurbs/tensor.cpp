@@ -8,21 +8,30 @@
 
 namespace dupin {
 
-std::vector<double> binomials(int n) {
-  std::vector<double> row(static_cast<std::size_t>(n) + 1, 1.0);
-  for (int k = 1; k <= n; ++k) row[k] = row[k - 1] * (n - k + 1) / k;
-  for (int k = 0; k <= n / 2; ++k) row[n - k] = row[k] = std::round(row[k]);
-  return row;
+std::span<const double> binomials(int n) {
+  static const std::vector<std::vector<double>> kRows = [] {
+    std::vector<std::vector<double>> rows(kMaxTensorDegree + 1);
+    for (int m = 0; m <= kMaxTensorDegree; ++m) {
+      rows[m].assign(static_cast<std::size_t>(m) + 1, 1.0);
+      for (int k = 1; k < m; ++k) rows[m][k] = rows[m - 1][k - 1] + rows[m - 1][k];
+    }
+    return rows;
+  }();
+  return kRows[n];
 }
 
 Tensor operator*(const Tensor& a, const Tensor& b) {
   Tensor out(a.p + b.p, a.q + b.q);
+  const int columns = b.q + 1;
   for (int i = 0; i <= a.p; ++i)
     for (int j = 0; j <= a.q; ++j) {
       const double factor = a.at(i, j);
       if (factor == 0) continue;
-      for (int k = 0; k <= b.p; ++k)
-        for (int l = 0; l <= b.q; ++l) out.at(i + k, j + l) += factor * b.at(k, l);
+      for (int k = 0; k <= b.p; ++k) {
+        double* to = &out.at(i + k, j);
+        const double* from = &b.c[static_cast<std::size_t>(k * columns)];
+        for (int l = 0; l < columns; ++l) to[l] += factor * from[l];
+      }
     }
   return out;
 }
@@ -36,7 +45,7 @@ Tensor operator*(const Tensor& a, double s) {
 Tensor raised(const Tensor& a, int p, int q) {
   if (p == a.p && q == a.q) return a;
   Tensor one(p - a.p, q - a.q);
-  const std::vector<double> bu = binomials(one.p), bv = binomials(one.q);
+  const std::span<const double> bu = binomials(one.p), bv = binomials(one.q);
   for (int i = 0; i <= one.p; ++i)
     for (int j = 0; j <= one.q; ++j) one.at(i, j) = bu[i] * bv[j];
   return a * one;
@@ -55,7 +64,7 @@ Tensor combined(const Tensor& a, const Tensor& b, double sign) {
 /// Calls visit(i, j, coefficient) for the unscaled coefficients.
 template <class Visit>
 void visit_coefficients(const Tensor& a, Visit visit) {
-  const std::vector<double> bu = binomials(a.p), bv = binomials(a.q);
+  const std::span<const double> bu = binomials(a.p), bv = binomials(a.q);
   for (int i = 0; i <= a.p; ++i)
     for (int j = 0; j <= a.q; ++j) visit(i, j, a.at(i, j) / (bu[i] * bv[j]));
 }
@@ -107,7 +116,7 @@ double largest_quotient(const Tensor& a, const Tensor& b) {
 HomogeneousTensors homogeneous_tensors(const BezierPatch& patch, const Frame3& frame) {
   const int p = patch.degree_u, q = patch.degree_v;
   HomogeneousTensors t{{Tensor(p, q), Tensor(p, q), Tensor(p, q)}, Tensor(p, q)};
-  const std::vector<double> bu = binomials(p), bv = binomials(q);
+  const std::span<const double> bu = binomials(p), bv = binomials(q);
   for (int i = 0; i <= p; ++i)
     for (int j = 0; j <= q; ++j) {
       const Vec4& pole = patch.pole(i, j);

@@ -6,9 +6,11 @@
 #define DUPIN_NURBS_TENSOR_H
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "bezier.h"
+#include "knots.h"
 
 namespace dupin {
 
@@ -22,8 +24,11 @@ struct Tensor {
   double at(int i, int j) const { return c[static_cast<std::size_t>(i * (q + 1) + j)]; }
 };
 
-/// C(n, 0) … C(n, n).
-std::vector<double> binomials(int n);
+/// Four times the highest degree of a spline, as in a torus's equation.
+inline constexpr int kMaxTensorDegree = 4 * kMaxDegree;
+
+/// C(n, 0) … C(n, n), n up to kMaxTensorDegree.
+std::span<const double> binomials(int n);
 
 Tensor operator*(const Tensor& a, const Tensor& b);
 Tensor operator*(const Tensor& a, double s);
