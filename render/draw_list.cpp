@@ -10,6 +10,9 @@ namespace {
 /// farthest depth is not drawn.
 constexpr double kNearestOfFar = 1e-6;
 
+/// Curved DPs nearer than this many radii of their bounding sphere are drawn by their prisms: nothing of the others is near the eye.
+constexpr double kProxyDistance = 1.2;
+
 struct Plane3 {
   Vec3 n;
   double d;
@@ -52,11 +55,16 @@ void depth_range(const Scene::Impl& scene, const ViewRays& view, DrawList& list)
   if (!view.perspective) {
     list.near_depth = lo;
     list.start_depth = lo;
+    const double range = std::max(hi - lo, std::numeric_limits<double>::min());
+    list.farthest_in_buffer = 0.25;
+    list.depth_terms = {1 + 0.75 * lo / range, -0.75 / range, 0};
     return;
   }
   list.far_depth = std::max(hi, std::numeric_limits<double>::min());
   list.near_depth = std::max(lo, kNearestOfFar * list.far_depth);
   list.start_depth = std::max(lo, 0.0);
+  list.depth_terms = {0, 0, list.near_depth};
+  list.farthest_in_buffer = list.near_depth / list.far_depth;
 }
 
 std::array<float, 4> texel(const Vec3& v, float w = 0) {
@@ -121,15 +129,7 @@ PartCamera part_camera(const SceneInstance& instance, const ScenePart& part, con
   const Vec3 eye = transform_point(instance.to_part, view.eye);
   camera.eye = view.perspective ? eye - part.anchor : -(instance.to_part.linear * view.forward);
   // From inside a solid, or cut open by the nearest depth, its inner sides can be seen.
-  bool outside = true;
-  if (view.perspective) {
-    outside = !part.box.contains(eye);
-  } else {
-    for (int i = 0; i < 8; ++i)
-      outside = outside && view.depth(transform_point(instance.to_world, part.box.corner(i))) > 0;
-    outside = outside || true;  // a parallel camera sees what is behind its eye too
-  }
-  camera.cull_turned_away = part.closed && outside;
+  camera.cull_turned_away = part.closed && !(view.perspective && part.box.contains(eye));
   return camera;
 }
 
@@ -155,26 +155,34 @@ bool out_of_view(const DpBounds& dp, const PartCamera& camera) {
          dot(camera.depth.n, dp.center) + camera.depth.d < -dp.radius * length(camera.depth.n);
 }
 
+/// Sorts planar DPs before curved ones, kinds together, and within a kind the nearest first.
 struct Candidate {
-  float depth;
+  std::uint64_t key;
   DrawItem item;
 };
 
-int kind(const DpBounds& dp) {
-  return dp.planar ? dp.pieces ? kPlanarPieces : kPlanarWhole : dp.pieces ? kCurvedPieces : kCurvedWhole;
+std::uint64_t sort_key(std::uint32_t kind, float depth) {
+  // Floats in order as unsigned integers: the sign bit turned for positive ones, all bits for negative ones.
+  const auto bits = std::bit_cast<std::uint32_t>(depth);
+  const std::uint32_t ordered = bits & 0x80000000U ? ~bits : bits | 0x80000000U;
+  return static_cast<std::uint64_t>(kind & kCurvedKind) << 48 | static_cast<std::uint64_t>(kind) << 32 | ordered;
 }
 
-void add_dps(const SceneInstance& instance, std::uint32_t index, const ScenePart& part,
-             const PartCamera& camera, std::array<std::vector<Candidate>, kDpKinds>& candidates) {
+void add_dps(const SceneInstance& instance, std::uint32_t index, const ScenePart& part, const PartCamera& camera,
+             std::vector<Candidate>& candidates) {
+  const double depth_scale = length(camera.depth.n);
   for (std::size_t i = 0; i < part.dps.size(); ++i) {
     const DpBounds& dp = part.dps[i];
     if (out_of_view(dp, camera) || (camera.cull_turned_away && turned_away(dp, camera))) continue;
     const double depth = dot(camera.depth.n, dp.center) + camera.depth.d;
-    const std::uint32_t color =
-        instance.face_colors.empty() ? instance.color : instance.face_colors[dp.color_face];
-    candidates[static_cast<std::size_t>(kind(dp))].push_back(
-        {static_cast<float>(depth),
-         {dp.record, index, instance.first_primitive + static_cast<std::uint32_t>(i) + 1, color}});
+    std::uint32_t kind = dp.kind;
+    if (kind & kCurvedKind) {
+      if (camera.cull_turned_away) kind |= kFrontOnlyKind;
+      if (camera.perspective && depth < kProxyDistance * dp.radius * depth_scale) kind |= kPrismKind;
+    }
+    const std::uint32_t color = instance.face_colors.empty() ? instance.color : instance.face_colors[dp.color_face];
+    candidates.push_back({sort_key(kind, static_cast<float>(depth)),
+                          {dp.record, index, instance.first_primitive + static_cast<std::uint32_t>(i) + 1, color}});
   }
 }
 
@@ -189,10 +197,11 @@ std::uint32_t DrawList::primitives() const {
 void build_draw_list(const Scene::Impl& scene, const ViewRays& view, DrawList& list) {
   list.instances.clear();
   list.items.clear();
+  list.groups.clear();
   list.runs.clear();
   depth_range(scene, view, list);
   const std::array<Plane3, 4> sides = side_planes(view);
-  std::array<std::vector<Candidate>, kDpKinds> candidates;
+  std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const SceneInstance& instance = scene.instances[i];
     const ScenePart& part = scene.parts[instance.part];
@@ -203,11 +212,15 @@ void build_draw_list(const Scene::Impl& scene, const ViewRays& view, DrawList& l
     if (!part.dps.empty())
       add_dps(instance, index, part, part_camera(instance, part, view, sides), candidates);
   }
-  for (std::size_t k = 0; k < kDpKinds; ++k) {
-    std::stable_sort(candidates[k].begin(), candidates[k].end(),
-                     [](const Candidate& a, const Candidate& b) { return a.depth < b.depth; });
-    list.count[k] = static_cast<std::uint32_t>(candidates[k].size());
-    for (const Candidate& c : candidates[k]) list.items.push_back(c.item);
+  // Equal keys keep the model's order, by the primitive's number: the same list whatever the sorting algorithm.
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return a.key != b.key ? a.key < b.key : a.item.primitive < b.item.primitive;
+  });
+  for (const Candidate& c : candidates) {
+    const auto kind = static_cast<std::uint32_t>(c.key >> 32 & 0xffff);
+    if (list.groups.empty() || list.groups.back().kind != kind) list.groups.push_back({kind, 0});
+    ++list.groups.back().count;
+    list.items.push_back(c.item);
   }
 }
 

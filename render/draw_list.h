@@ -25,17 +25,33 @@ struct TriangleRun {
   std::uint32_t instance, first_triangle, triangles, first_primitive;
 };
 
-/// The kinds of DPs, each with a program of its own, in drawing order.
-enum DpKind { kPlanarWhole, kPlanarPieces, kCurvedWhole, kCurvedPieces, kDpKinds };
+/// What a DP's proxy and region are made of; each combination has a program of its own, so that the usual ones are the fastest.
+constexpr std::uint32_t kCurvedKind = 1, kPlanesKind = 2, kLinesKind = 4, kArcsKind = 8, kEllipsesKind = 16;
+constexpr std::uint32_t kPrismKind = 32;      ///< curved: too near to the eye for a proxy in the picture's plane
+constexpr std::uint32_t kFrontOnlyKind = 64;  ///< curved: only its outer side can be seen
+
+/// Curved, bounded by this many arcs and nothing else, as most cells of free-form faces are: the arcs go with the proxy.
+constexpr std::uint32_t kFlatArcsShift = 7, kFlatArcsKind = 7u << kFlatArcsShift, kMostFlatArcs = 4;
+
+/// Consecutive items of one kind.
+struct DrawGroup {
+  std::uint32_t kind = 0, count = 0;
+};
 
 struct DrawList {
   std::vector<InstanceTexels> instances;
-  std::vector<DrawItem> items;  ///< all of a kind together
-  std::array<std::uint32_t, kDpKinds> count{};
+  std::vector<DrawItem> items;
+  std::vector<DrawGroup> groups;  ///< planar ones first
   std::vector<TriangleRun> runs;
   std::uint32_t primitives() const;
   double start_depth = 0;                ///< rays start here: in front of everything, and not behind the eye
   double near_depth = 0, far_depth = 0;  ///< everything drawn lies between
+  /// The depth buffer holds x + y·depth + z/depth: 1 at the nearest depth, and less farther away, as floats are densest near 0, where
+  /// perspective squeezes depths together. An empty pixel has 0.
+  std::array<double, 3> depth_terms{};
+  double farthest_in_buffer = 0;  ///< the least that anything drawn has there
+  /// Between an empty pixel's value and that of anything drawn.
+  float covered_depth() const { return static_cast<float>(0.5 * farthest_in_buffer); }
 };
 
 /// Resets `list` and fills it; keeps its memory.

@@ -34,15 +34,8 @@ void Renderer::Impl::set_view(GLuint name, const ViewRays& view) const {
   gl->Uniform2f(location("picture"), static_cast<float>(view.width), static_cast<float>(view.height));
   gl->Uniform2f(location("pixel"), static_cast<float>(2.0 / view.width),
                 static_cast<float>(2.0 / view.height));
-  // The nearest depth is 1 in the buffer and the farthest 0: floats are densest there, where perspective
-  // squeezes depths together.
-  if (view.perspective) {
-    gl->Uniform3f(location("depth_terms"), 0, 0, static_cast<float>(list_.near_depth));
-  } else {
-    const double range = std::max(list_.far_depth - list_.near_depth, 1e-300);
-    gl->Uniform3f(location("depth_terms"), static_cast<float>(list_.far_depth / range),
-                  static_cast<float>(-1 / range), 0);
-  }
+  const auto& terms = list_.depth_terms;
+  gl->Uniform3f(location("depth_terms"), static_cast<float>(terms[0]), static_cast<float>(terms[1]), static_cast<float>(terms[2]));
   gl->Uniform2f(location("axis_scale"), static_cast<float>(1 / view.sx), static_cast<float>(1 / view.sy));
   gl->Uniform2f(location("axis_offset"), static_cast<float>(view.ox), static_cast<float>(view.oy));
   const Vec3 back = -view.forward;

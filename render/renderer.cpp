@@ -115,20 +115,16 @@ Result<std::unique_ptr<Scene>> Renderer::upload(const Model& model, const DpScen
 }
 
 /// Every sample's passes, the color picture holding their sum.
-Status Renderer::Impl::draw_samples(const Scene::Impl& scene, const ViewRays& view,
-                                    const DrawOptions& options) {
+Status Renderer::Impl::draw_samples(const Scene::Impl& scene, const ViewRays& view, const DrawOptions& options) {
   const unsigned all = pictures_for(options.outputs), color = all & 1U << kColorPicture;
   const bool together = options.samples == 1 || !color;
   Status status = prepare_targets(view.width, view.height, all);
-  if (status.ok() && !together) {
-    for (int i = 0; i < options.samples && status.ok(); ++i) {
-      const Vec2 offset = sample_offset(i, options.samples);
-      status = run({&scene, jittered(view, offset.x, offset.y), &options, color, i > 0});
-    }
+  for (int i = 0; i < options.samples && status.ok() && !together; ++i) {
+    const Vec2 offset = sample_offset(i, options.samples);
+    status = run({&scene, jittered(view, offset.x, offset.y), &options, color, options.samples, i == 0});
   }
   // The other pictures, and the numbers of what is seen, are the pixel centres'.
-  if (status.ok() && (together || all != color))
-    status = run({&scene, view, &options, together ? all : all & ~color, false});
+  if (status.ok() && (together || all != color)) status = run({&scene, view, &options, together ? all : all & ~color, 1, true});
   return status;
 }
 

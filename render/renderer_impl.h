@@ -57,7 +57,8 @@ class Renderer::Impl {
     ViewRays view;
     const DrawOptions* options = nullptr;
     unsigned pictures = 0;
-    bool accumulate = false;  ///< add to the color picture instead of replacing it
+    int samples = 1;    ///< > 1: the color picture holds this many passes' sum
+    bool first = true;  ///< of them
   };
   /// Makes room for pictures of this size; ids and depth always.
   Status prepare_targets(int width, int height, unsigned pictures);
@@ -89,7 +90,9 @@ class Renderer::Impl {
   Status draw_dps(const ViewRays& view);
   Status draw_triangles(const Pass& pass);
   Status shade(const Pass& pass);
-  Status shade_with(const Pass& pass, bool mesh, bool second);
+  Status begin_shading(const Pass& pass);
+  void clear_pictures(const Pass& pass);
+  Status shade_with(const Pass& pass, bool mesh);
   void grow_indices(std::uint32_t dps);
 
   std::map<std::string, GlProgram> programs_;

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "draw_list.h"
+
 namespace dupin {
 namespace {
 
@@ -139,7 +141,12 @@ DpBounds dp_bounds(const QuadricDp& dp, const Vec3& anchor) {
   const std::array<Vec3, 8> box = corners(dp);
   DpBounds bounds;
   bounds.planar = dp.planar;
-  bounds.pieces = piece_count(dp) > 0 || !dp.reference_inside;
+  bounds.kind = !dp.planar * kCurvedKind | (dp.planes > 0) * kPlanesKind | (dp.lines > 0) * kLinesKind |
+                (dp.arcs > 0) * kArcsKind | (dp.ellipses > 0) * kEllipsesKind;
+  if (bounds.kind == (kCurvedKind | kArcsKind) && dp.arcs <= kMostFlatArcs)
+    bounds.kind |= static_cast<std::uint32_t>(dp.arcs) << kFlatArcsShift;
+  // A region without pieces that is all outside: some kind must look at `reference_inside`.
+  if (!dp.reference_inside && bounds.kind <= (kCurvedKind | kPlanesKind)) bounds.kind |= kLinesKind;
   bounds.color_face = dp.face;
   Box3 local;
   for (const Vec3& c : box) local.add(c);

@@ -19,7 +19,8 @@ struct DpBounds {
   double sin_cone = 2;  ///< of its half-angle, which is less than a right angle; > 1: there is no such cone
   std::uint32_t record = 0;
   std::uint32_t color_face = 0;  ///< index of its face in the part
-  bool planar = false, pieces = false, whole = false;
+  bool planar = false;
+  std::uint32_t kind = 0;  ///< see draw_list.h; without what depends on the camera
 };
 DpBounds dp_bounds(const QuadricDp& dp, const Vec3& anchor);
 

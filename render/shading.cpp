@@ -1,32 +1,17 @@
 // The second half of a frame: once a pixel, from the primitive's number to colors and numbers.
-#include <bit>
+//
+// Only pixels that show something are worked on: the picture-covering triangle is drawn between the depth of an empty pixel, 0, and
+// the least that anything drawn can have, and lets the depth test sort them out before the shader runs.
+#include <limits>
 
 #include "renderer_impl.h"
 
 namespace dupin {
 namespace {
 
-struct PictureFormat {
-  GLenum internal, format, type;
-};
-constexpr PictureFormat kFormats[kPictures] = {{GL_RGBA32F, GL_RGBA, GL_FLOAT},
-                                               {GL_RGBA32F, GL_RGBA, GL_FLOAT},
-                                               {GL_RG32F, GL_RG, GL_FLOAT},
-                                               {GL_RGBA32F, GL_RGBA, GL_FLOAT},
-                                               {GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT}};
 constexpr const char* kLocations[kPictures] = {"LOCATION_COLOR", "LOCATION_NORMAL_DEPTH",
                                                "LOCATION_CURVATURE", "LOCATION_DIRECTION",
                                                "LOCATION_NUMBERS"};
-
-void allocate(const Gl& gl, GlTexture& texture, const PictureFormat& format, int width, int height) {
-  texture = GlTexture(gl);
-  gl.ActiveTexture(GL_TEXTURE0 + kScratchUnit);
-  gl.BindTexture(GL_TEXTURE_2D, texture.name());
-  gl.TexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format.internal), width, height, 0, format.format,
-                format.type, nullptr);
-  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-    gl.TexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);
-}
 
 bool needs_curvature(Shading shading) {
   return shading == Shading::k1 || shading == Shading::k2 || shading == Shading::mean ||
@@ -49,113 +34,119 @@ std::uint32_t srgb_word(const Color& c) {
   return byte(c.r) | byte(c.g) << 8 | byte(c.b) << 16 | 0xff000000U;
 }
 
+/// Adds a #define to the program and to the name that it is found by.
+struct Variant {
+  ProgramText text;
+  std::string key;
+  void define(const std::string& what) {
+    text.defines.push_back(what);
+    key += ' ' + what;
+  }
+};
+
+Variant shading_variant(unsigned pictures, const DrawOptions& options, bool mesh) {
+  const bool color = pictures & 1U << kColorPicture, curves = pictures & 1U << kCurvaturePicture;
+  const bool numbers = pictures & 1U << kNumbersPicture, edges = color && options.edges && !mesh;
+  Variant v;
+  v.key = mesh ? "shade mesh" : "shade";
+  int location = 0;
+  for (int i = 0; i < kPictures; ++i)
+    if (pictures & 1U << i) v.define(std::string(kLocations[i]) + ' ' + std::to_string(location++));
+  if (color) v.define("COLOR");
+  if (color) v.define("SHADING " + std::to_string(static_cast<int>(options.shading)));
+  if (pictures & 1U << kNormalDepthPicture) v.define("NORMAL_DEPTH");
+  if (curves) v.define("CURVATURE");
+  if (curves || (color && needs_curvature(options.shading))) v.define("CURVES");
+  if (numbers || (color && options.shading == Shading::primitive)) v.define("NUMBERS");
+  if (numbers) v.define("NUMBERS_PICTURE");
+  if (edges) v.define("EDGES");
+  v.text.vertex = {"screen.vert"};
+  v.text.fragment = {"shade_head.glsl", "quadric.glsl"};
+  if (mesh) {
+    v.text.fragment.push_back("surface_mesh.glsl");
+    v.text.units.push_back({"colors", kHeapUnit});  // triangles need no heap
+  } else {
+    if (edges) v.text.fragment.push_back("edges.glsl");
+    v.text.fragment.push_back("surface_dp.glsl");
+  }
+  v.text.fragment.push_back("looks.glsl");
+  v.text.fragment.push_back("shade.frag");
+  return v;
+}
+
+Color premultiplied_background(const DrawOptions& options) {
+  const Color c = options.background.value_or(Color{0, 0, 0, 0});
+  return {c.r * c.a, c.g * c.a, c.b * c.a, c.a};
+}
+
 }  // namespace
 
-unsigned pictures_for(unsigned outputs) {
-  unsigned pictures = 0;
-  if (outputs & kColor) pictures |= 1U << kColorPicture;
-  if (outputs & (kNormal | kDepth | kPosition | kUv)) pictures |= 1U << kNormalDepthPicture;
-  if (outputs & (kCurvature | kDirection)) pictures |= 1U << kCurvaturePicture | 1U << kDirectionPicture;
-  if (outputs & (kFace | kPrimitive | kUv)) pictures |= 1U << kNumbersPicture;
-  return pictures;
-}
-
-Status Renderer::Impl::prepare_targets(int width, int height, unsigned pictures) {
-  if (width < 1 || height < 1) return {StatusCode::invalid_argument, "a picture needs at least one pixel"};
-  if (width > max_picture || height > max_picture)
-    return {StatusCode::limit, "the picture is larger than " + std::to_string(max_picture) +
-                                   " pixels, this OpenGL context's limit"};
-  if (width != width_ || height != height_) {
-    for (GlTexture& picture : pictures_) picture = {};
-    allocate(*gl, ids_, {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT}, width, height);
-    allocate(*gl, depth_, {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT}, width, height);
-    gl->BindFramebuffer(GL_FRAMEBUFFER, visibility_framebuffer_.name());
-    gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, ids_.name(), 0);
-    gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_.name(), 0);
-    width_ = width;
-    height_ = height;
-    if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-      return {StatusCode::no_device, "this OpenGL context cannot draw numbers with a float depth buffer"};
-  }
-  for (int i = 0; i < kPictures; ++i) {
-    GlTexture& picture = pictures_[static_cast<std::size_t>(i)];
-    if ((pictures & 1U << i) && !picture) allocate(*gl, picture, kFormats[i], width, height);
-  }
-  return {};
-}
-
-Status Renderer::Impl::shade(const Pass& pass) {
+Status Renderer::Impl::begin_shading(const Pass& pass) {
   gl->BindFramebuffer(GL_FRAMEBUFFER, shading_framebuffer_.name());
   std::vector<GLenum> buffers;
   for (int i = 0; i < kPictures; ++i) {
     const auto attachment = static_cast<GLenum>(GL_COLOR_ATTACHMENT0 + i);
     const bool wanted = pass.pictures & 1U << i;
-    gl->FramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D,
-                             wanted ? pictures_[static_cast<std::size_t>(i)].name() : 0, 0);
+    const GlTexture& texture = pictures_[static_cast<std::size_t>(i)];
+    gl->FramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, wanted ? texture.name() : 0, 0);
     if (wanted) buffers.push_back(attachment);
   }
+  gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_.name(), 0);
   gl->DrawBuffers(static_cast<GLsizei>(buffers.size()), buffers.data());
   if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
     return {StatusCode::no_device, "this OpenGL context cannot draw into float pictures"};
   gl->Viewport(0, 0, width_, height_);
-  gl->Disable(GL_DEPTH_TEST);
+  gl->ActiveTexture(GL_TEXTURE0 + kIdsUnit);
+  gl->BindTexture(GL_TEXTURE_2D, ids_.name());
+  gl->BindVertexArray(empty_array_.name());
+  return {};
+}
+
+void Renderer::Impl::clear_pictures(const Pass& pass) {
+  GLint buffer = 0;
+  for (int i = 0; i < kPictures; ++i) {
+    if (!(pass.pictures & 1U << i)) continue;
+    if (i == kNumbersPicture) {
+      const GLuint none[4] = {0, 0, 0, 0};
+      gl->ClearBufferuiv(GL_COLOR, buffer, none);
+    } else {
+      const Color c = premultiplied_background(*pass.options);
+      const float n = static_cast<float>(pass.samples), infinity = std::numeric_limits<float>::infinity();
+      const float color[4] = {n * c.r, n * c.g, n * c.b, n * c.a}, far[4] = {0, 0, 0, infinity}, zero[4] = {0, 0, 0, 0};
+      gl->ClearBufferfv(GL_COLOR, buffer, i == kColorPicture ? color : i == kNormalDepthPicture ? far : zero);
+    }
+    ++buffer;
+  }
+}
+
+Status Renderer::Impl::shade(const Pass& pass) {
+  Status status = begin_shading(pass);
+  if (!status.ok()) return status;
+  if (pass.first) clear_pictures(pass);
+  const bool mesh = !list_.runs.empty(), dps = !list_.items.empty();
+  gl->Enable(GL_DEPTH_TEST);
+  gl->DepthFunc(GL_LESS);
   gl->DepthMask(GL_FALSE);
-  if (pass.accumulate) {
+  if (pass.samples > 1) {
     gl->Enablei(GL_BLEND, 0);
     gl->BlendEquationSeparate(GL_FUNC_ADD, GL_FUNC_ADD);
     gl->BlendFuncSeparate(GL_ONE, GL_ONE, GL_ONE, GL_ONE);
   }
-  gl->ActiveTexture(GL_TEXTURE0 + kIdsUnit);
-  gl->BindTexture(GL_TEXTURE_2D, ids_.name());
-  const bool mesh = !list_.runs.empty(), dps = !list_.items.empty() || !mesh;
-  Status status;
-  if (dps) status = shade_with(pass, false, false);
-  if (status.ok() && mesh) status = shade_with(pass, true, dps);
+  if (dps) status = shade_with(pass, false);
+  if (status.ok() && mesh) status = shade_with(pass, true);
   gl->Disablei(GL_BLEND, 0);
   return status;
 }
 
-Status Renderer::Impl::shade_with(const Pass& pass, bool mesh, bool second) {
+Status Renderer::Impl::shade_with(const Pass& pass, bool mesh) {
   const DrawOptions& options = *pass.options;
-  const bool color = pass.pictures & 1U << kColorPicture, curves = pass.pictures & 1U << kCurvaturePicture;
-  ProgramText text;
-  std::string key = "shade";
-  const auto define = [&](const std::string& what) {
-    text.defines.push_back(what);
-    key += ' ' + what;
-  };
-  int location = 0;
-  for (int i = 0; i < kPictures; ++i)
-    if (pass.pictures & 1U << i) define(std::string(kLocations[i]) + ' ' + std::to_string(location++));
-  if (color) define("COLOR");
-  if (color) define("SHADING " + std::to_string(static_cast<int>(options.shading)));
-  if (pass.pictures & 1U << kNormalDepthPicture) define("NORMAL_DEPTH");
-  if (curves) define("CURVATURE");
-  if (curves || (color && needs_curvature(options.shading))) define("CURVES");
-  if ((pass.pictures & 1U << kNumbersPicture) || (color && options.shading == Shading::primitive))
-    define("NUMBERS");
-  if (pass.pictures & 1U << kNumbersPicture) define("NUMBERS_PICTURE");
-  if (color && options.edges) define("EDGES");
-  if (second) define("SECOND_PASS");
-  text.vertex = {"screen.vert"};
-  text.fragment = {"shade_head.glsl", "quadric.glsl"};
-  if (mesh) {
-    key += " mesh";
-    text.fragment.push_back("surface_mesh.glsl");
-    text.units.push_back({"colors", kHeapUnit});  // triangles need no heap
-  } else {
-    text.fragment.push_back("edges.glsl");
-    text.fragment.push_back("surface_dp.glsl");
-  }
-  text.fragment.push_back("looks.glsl");
-  text.fragment.push_back("shade.frag");
-  const auto name = program(key, text);
+  const Variant variant = shading_variant(pass.pictures, options, mesh);
+  const auto name = program(variant.key, variant.text);
   if (!name) return name.status();
   set_view(*name, pass.view);
   const auto uniform = [&](const char* n) { return gl->GetUniformLocation(*name, n); };
-  const Color background = options.background.value_or(Color{0, 0, 0, 0});
-  gl->Uniform4f(uniform("background"), background.r * background.a, background.g * background.a,
-                background.b * background.a, background.a);
+  const Color under = pass.samples > 1 ? premultiplied_background(options) : Color{0, 0, 0, 0};
+  gl->Uniform4f(uniform("under"), under.r, under.g, under.b, under.a);
   gl->Uniform1f(uniform("edge_half_width"), static_cast<float>(options.edge_width_px / 2));
   gl->Uniform1f(uniform("curvature_scale"), static_cast<float>(curvature_scale(*pass.scene, options)));
   gl->Uniform1ui(uniform("only_color"), options.color ? srgb_word(*options.color) : 0);
@@ -167,21 +158,9 @@ Status Renderer::Impl::shade_with(const Pass& pass, bool mesh, bool second) {
     pass.scene->colors.bind(kHeapUnit);
     runs_.bind(kRunsUnit);
   }
-  gl->BindVertexArray(empty_array_.name());
+  gl->Uniform1f(uniform("screen_depth"), list_.covered_depth());
   gl->DrawArrays(GL_TRIANGLES, 0, 3);
   return {};
-}
-
-void Renderer::Impl::read(Picture picture, GLenum format, GLenum type, void* pixels) {
-  gl->BindFramebuffer(GL_FRAMEBUFFER, shading_framebuffer_.name());
-  gl->ReadBuffer(static_cast<GLenum>(GL_COLOR_ATTACHMENT0 + picture));
-  gl->ReadPixels(0, 0, width_, height_, format, type, pixels);
-}
-
-void Renderer::Impl::read_ids(std::uint32_t* pixels) {
-  gl->BindFramebuffer(GL_FRAMEBUFFER, visibility_framebuffer_.name());
-  gl->ReadBuffer(GL_COLOR_ATTACHMENT0);
-  gl->ReadPixels(0, 0, width_, height_, GL_RED_INTEGER, GL_UNSIGNED_INT, pixels);
 }
 
 }  // namespace dupin

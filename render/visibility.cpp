@@ -8,6 +8,23 @@ constexpr std::size_t kSlotBytes = 12 * 16;
 constexpr const char* kSlotOutputs[] = {"slot0", "slot1", "slot2", "slot3", "slot4",  "slot5",
                                         "slot6", "slot7", "slot8", "slot9", "slot10", "slot11"};
 
+ProgramText dp_program(std::uint32_t kind) {
+  ProgramText text;
+  const bool curved = kind & kCurvedKind;
+  const std::pair<std::uint32_t, const char*> names[] = {{kPlanesKind, "PLANES"}, {kLinesKind, "LINES"}, {kArcsKind, "ARCS"},
+                                                         {kEllipsesKind, "ELLIPSES"}, {kPrismKind, "PRISM"},
+                                                         {kFrontOnlyKind, "FRONT_ONLY"}};
+  for (const auto& [bit, define] : names)
+    if (kind & bit) text.defines.push_back(define);
+  if (kind & kFlatArcsKind) text.defines.push_back("FLAT_ARCS " + std::to_string((kind & kFlatArcsKind) >> kFlatArcsShift));
+  if (kind & (kPlanesKind | kLinesKind | kArcsKind | kEllipsesKind)) text.defines.push_back("PIECES");
+  text.vertex = {"proxy.glsl", curved ? "curved.vert" : "planar.vert"};
+  if (curved) text.fragment.push_back("quadric.glsl");
+  text.fragment.push_back("pieces.glsl");
+  text.fragment.push_back(curved ? "curved.frag" : "planar.frag");
+  return text;
+}
+
 }  // namespace
 
 void Renderer::Impl::upload_list(const Scene::Impl& scene) {
@@ -81,25 +98,18 @@ void Renderer::Impl::grow_indices(std::uint32_t dps) {
 
 Status Renderer::Impl::draw_dps(const ViewRays& view) {
   std::uint32_t first = 0;
-  for (int kind = 0; kind < kDpKinds; ++kind) {
-    const std::uint32_t count = list_.count[static_cast<std::size_t>(kind)];
-    if (count == 0) continue;
-    const bool planar = kind <= kPlanarPieces, pieces = kind == kPlanarPieces || kind == kCurvedPieces;
-    ProgramText text;
-    text.vertex = {"proxy.glsl", planar ? "planar.vert" : "curved.vert"};
-    if (!planar) text.fragment.push_back("quadric.glsl");
-    if (pieces) text.fragment.push_back("pieces.glsl"), text.defines.push_back("PIECES");
-    text.fragment.push_back(planar ? "planar.frag" : "curved.frag");
-    const auto name = program("dp" + std::to_string(kind), text);
+  for (const DrawGroup& group : list_.groups) {
+    const auto name = program("dp" + std::to_string(group.kind), dp_program(group.kind));
     if (!name) return name.status();
     set_view(*name, view);
     gl->Uniform1i(gl->GetUniformLocation(*name, "first_slot"), static_cast<GLint>(first));
-    grow_indices(count);
-    gl->BindVertexArray(planar ? quad_array_.name() : prism_array_.name());
-    if (!planar) gl->Enable(GL_CULL_FACE);
-    gl->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(count * (planar ? 6 : 36)), GL_UNSIGNED_INT, nullptr);
+    grow_indices(group.count);
+    const bool prism = group.kind & kPrismKind;
+    gl->BindVertexArray(prism ? prism_array_.name() : quad_array_.name());
+    if (prism) gl->Enable(GL_CULL_FACE);
+    gl->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(group.count * (prism ? 36 : 6)), GL_UNSIGNED_INT, nullptr);
     gl->Disable(GL_CULL_FACE);
-    first += count;
+    first += group.count;
   }
   return {};
 }

@@ -12,7 +12,7 @@ uniform float start, spread, start_depth;
 
 const int kSlotTexels = 12;
 const int kInstanceTexels = 10;
-const uint kPlanar = 1u, kFlipped = 2u, kRectangle = 4u, kPieces = 8u, kReferenceInside = 16u;
+const uint kPlanar = 1u, kFlipped = 2u, kRectangle = 4u, kPieces = 8u, kReferenceInside = 16u, kFeaturePieces = 32u;
 // Numbers in the id picture: 0 background; slot + 1, with kSecondRoot if the ray met the quadric there; or a triangle + 1 with kTriangle.
 const uint kTriangle = 0x80000000u, kSecondRoot = 0x40000000u, kIdMask = 0x3fffffffu;
 

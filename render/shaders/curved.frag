@@ -12,8 +12,10 @@ bool region_contains(vec3 x) {
   float rounding = depth.w;
   if (!(x.z >= depth.y - rounding && x.z <= depth.z + rounding)) return false;
   if (!(min(min(dot(side0, at), dot(side1, at)), min(dot(side2, at), dot(side3, at))) >= 0.0)) return false;
-#ifdef PIECES
-  return planes_contain(int(id.z), id.y, x, rounding) && pieces_contain(int(id.z), id.y, x.xy, rounding);
+#if defined(FLAT_ARCS)
+  return flat_arcs_contain(id.y, x.xy, rounding);
+#elif defined(PIECES)
+  return bounded(int(id.z), id.y, x, rounding);
 #else
   return true;
 #endif
@@ -27,6 +29,12 @@ void main() {
   o += t0 * d;
   float first, second, slope;
   if (!quadric_roots(bend, depth.x, o, d, first, second, slope)) discard;
+#ifdef FRONT_ONLY
+  // Only one of the two is met from outside: there F falls along the ray, or rises if n points inwards.
+  bool on_second = (id.y & kFlipped) != 0u ? slope < 0.0 : slope >= 0.0;
+  float t = on_second ? second : first, z = start_depth + t0 + t;
+  bool hit = z >= near_depth && region_contains(o + t * d);
+#else
   bool second_nearer = second < first;
   float t = 0.0, z = 0.0;
   bool hit = false, on_second = second_nearer;
@@ -37,6 +45,7 @@ void main() {
     hit = z >= near_depth && region_contains(o + t * d);
     if (hit) break;
   }
+#endif
   if (!hit) discard;
   out_id = on_second ? id.x | kSecondRoot : id.x;
   gl_FragDepth = depth_terms.x + depth_terms.y * z + depth_terms.z / z;

@@ -1,9 +1,14 @@
-// A curved DP: the prism footprint × [z lo, z hi], of which the far sides are drawn, so that every pixel is tried once, from inside too.
+// A curved DP: a rectangle of the picture around the prism footprint × [z lo, z hi]; or, where that reaches behind the eye, the prism
+// itself, of which the far sides are drawn. Either way every pixel is tried once.
 uniform int first_slot;
 flat out vec3 s, f, p, q;
 flat out vec4 bend, depth;  // λu λv a b | c, z lo, z hi, rounding
 flat out vec3 side0, side1, side2, side3;
 flat out uvec3 id;          // number, meta, pieces' texel
+#ifdef FLAT_ARCS
+flat out vec4 arcs[2 * FLAT_ARCS];
+flat out vec2 reference;
+#endif
 
 vec3 side_function(vec2 a, vec2 b, float rounding) {
   vec2 d = b - a;
@@ -13,8 +18,62 @@ vec3 side_function(vec2 a, vec2 b, float rounding) {
   return vec3(inward, rounding - dot(inward, a));
 }
 
+#ifdef PRISM
+vec4 prism_corner(vec4 c01, vec4 c23, vec2 ends, vec4 rx, vec4 ry, vec4 rf, float scale_ratio) {
+  int i = gl_VertexID & 3;
+  bool top = (gl_VertexID & 4) != 0;
+  // A mirrored placement turns the prism inside out; so does exchanging its ends.
+  if (dot(cross(rx.xyz, ry.xyz), rf.xyz) < 0.0) top = !top;
+  vec4 at = vec4(corner_of(c01, c23, i), top ? ends.y : ends.x, 1.0);
+  float w = spread > 0.0 ? abs(dot(rf, at)) : 1.0;
+  float grow = 2.0 * kGrow * w * scale_ratio / (picture.y * 0.5 * max(length(ry.xyz), 1e-30));
+  at.xy += miter(side_to(c01, c23, i), side_from(c01, c23, i), vec2(grow));
+  at.z += top ? grow : -grow;
+  return to_clip(vec2(dot(rx, at), dot(ry, at)), dot(rf, at));
+}
+#else
+struct Rectangle {
+  vec2 axis, low, high;
+};
+
+vec2 on_picture(vec2 c, float z, vec4 rx, vec4 ry, vec4 rf) {
+  vec4 at = vec4(c, z, 1.0);
+  return vec2(dot(rx, at), dot(ry, at)) / (spread > 0.0 ? dot(rf, at) : 1.0) * picture * 0.5;
+}
+
+Rectangle around(vec2 axis, vec2 a, vec2 b, vec2 c, vec2 d, vec2 e, vec2 f, vec2 g, vec2 h) {
+  axis = dot(axis, axis) > 1e-12 ? normalize(axis) : vec2(1.0, 0.0);
+  mat2 turn = mat2(axis.x, -axis.y, axis.y, axis.x);
+  a = turn * a, b = turn * b, c = turn * c, d = turn * d, e = turn * e, f = turn * f, g = turn * g, h = turn * h;
+  return Rectangle(axis, min(min(min(a, b), min(c, d)), min(min(e, f), min(g, h))),
+                   max(max(max(a, b), max(c, d)), max(max(e, f), max(g, h))));
+}
+
+float area(Rectangle r) {
+  vec2 size = r.high - r.low + 1.0;
+  return size.x * size.y;
+}
+
+// The smaller of the two rectangles around the prism's picture that are aligned with one of the footprint's first two sides.
+vec2 rectangle_corner(vec4 c01, vec4 c23, vec2 ends, vec4 rx, vec4 ry, vec4 rf) {
+  vec2 a = on_picture(c01.xy, ends.x, rx, ry, rf), b = on_picture(c01.zw, ends.x, rx, ry, rf);
+  vec2 c = on_picture(c23.xy, ends.x, rx, ry, rf), d = on_picture(c23.zw, ends.x, rx, ry, rf);
+  vec2 e = on_picture(c01.xy, ends.y, rx, ry, rf), f = on_picture(c01.zw, ends.y, rx, ry, rf);
+  vec2 g = on_picture(c23.xy, ends.y, rx, ry, rf), h = on_picture(c23.zw, ends.y, rx, ry, rf);
+  Rectangle first = around(b - a + f - e, a, b, c, d, e, f, g, h), second = around(c - b + g - f, a, b, c, d, e, f, g, h);
+  if (area(second) < area(first)) first = second;
+  int i = gl_VertexID & 3;
+  vec2 p = vec2(i == 1 || i == 2 ? first.high.x + kGrow : first.low.x - kGrow, i >= 2 ? first.high.y + kGrow : first.low.y - kGrow);
+  return (p.x * first.axis + p.y * vec2(-first.axis.y, first.axis.x)) * 2.0 / picture;
+}
+#endif
+
 void main() {
+  #ifdef PRISM
   int slot = first_slot + (gl_VertexID >> 3), i = gl_VertexID & 3;
+#else
+  int slot = first_slot + (gl_VertexID >> 2);
+#endif
   uvec4 t0 = texelFetch(slots, slot * kSlotTexels), t1 = texelFetch(slots, slot * kSlotTexels + 1);
   vec4 t3 = slot_texel(slot, 3), t5 = slot_texel(slot, 5), t11 = slot_texel(slot, 11);
   vec4 c01 = slot_texel(slot, 6), c23 = slot_texel(slot, 7);
@@ -25,19 +84,20 @@ void main() {
   bend = slot_texel(slot, 4);
   depth = vec4(t5.xyz, t3.w);
   id = uvec3(uint(slot) + 1u, t0.w, t1.w);
+#ifdef FLAT_ARCS
+  reference = heap_texel(int(t1.w)).zw;
+  for (int k = 0; k < 2 * FLAT_ARCS; ++k) arcs[k] = heap_texel(int(t1.w) + 1 + k);
+#endif
   side0 = side_function(c01.xy, c01.zw, t3.w);
   side1 = side_function(c01.zw, c23.xy, t3.w);
   side2 = side_function(c23.xy, c23.zw, t3.w);
   side3 = side_function(c23.zw, c01.xy, t3.w);
 
   vec4 rx = slot_texel(slot, 8), ry = slot_texel(slot, 9), rf = slot_texel(slot, 10);
-  bool top = (gl_VertexID & 4) != 0;
-  // A mirrored placement turns the prism inside out; so does exchanging its ends.
-  if (dot(cross(rx.xyz, ry.xyz), rf.xyz) < 0.0) top = !top;
-  vec4 at = vec4(corner_of(c01, c23, i), top ? t5.z : t5.y, 1.0);
-  float w = spread > 0.0 ? abs(dot(rf, at)) : 1.0;
-  float grow = 2.0 * kGrow * w * t11.y / (picture.y * 0.5 * max(length(ry.xyz), 1e-30));
-  at.xy += miter(side_to(c01, c23, i), side_from(c01, c23, i), vec2(grow));
-  at.z += top ? grow : -grow;
-  gl_Position = to_clip(vec2(dot(rx, at), dot(ry, at)), dot(rf, at));
+#ifdef PRISM
+  gl_Position = prism_corner(c01, c23, vec2(t5.y, t5.z), rx, ry, rf, t11.y);
+#else
+  vec2 at = rectangle_corner(c01, c23, vec2(t5.y, t5.z), rx, ry, rf);
+  gl_Position = vec4(at, 0.5, 1.0);
+#endif
 }

@@ -13,8 +13,7 @@ void main() {
   if (min(min(dot(side0, at), dot(side1, at)), min(dot(side2, at), dot(side3, at))) < 0.0) discard;
 #ifdef PIECES
   vec2 p = vec2(dot(row_x, at), dot(row_y, at)) / dot(row_w, at);
-  if (!planes_contain(pieces.x, uint(pieces.y), vec3(p, 0.0), rounding)) discard;
-  if (!pieces_contain(pieces.x, uint(pieces.y), p, rounding)) discard;
+  if (!bounded(pieces.x, uint(pieces.y), vec3(p, 0.0), rounding)) discard;
 #endif
   out_id = id;
 }

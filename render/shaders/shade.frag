@@ -13,22 +13,6 @@ layout(location = LOCATION_DIRECTION) out vec4 out_direction;
 layout(location = LOCATION_NUMBERS) out uvec2 out_numbers;
 #endif
 
-void write_background() {
-#ifdef COLOR
-  out_color = background;
-#endif
-#ifdef NORMAL_DEPTH
-  out_normal_depth = vec4(0.0, 0.0, 0.0, uintBitsToFloat(0x7f800000u));
-#endif
-#ifdef CURVATURE
-  out_curvature = vec2(0.0);
-  out_direction = vec4(0.0);
-#endif
-#ifdef NUMBERS_PICTURE
-  out_numbers = uvec2(0u);
-#endif
-}
-
 #ifdef COLOR
 vec3 picture_color(Surface x, vec2 at) {
   vec3 v = ray_to_viewer(at);
@@ -66,18 +50,10 @@ void main() {
   ivec2 where = ivec2(gl_FragCoord.xy);
   uint number = texelFetch(ids, where, 0).x;
   vec2 at = gl_FragCoord.xy * pixel - 1.0;
-#ifdef SECOND_PASS
   if (!is_mine(number)) discard;
-#else
-  if (number == 0u) {
-    write_background();
-    return;
-  }
-  if (!is_mine(number)) discard;
-#endif
   Surface x = surface_at(number, at);
 #ifdef COLOR
-  out_color = vec4(picture_color(x, at), 1.0);
+  out_color = vec4(picture_color(x, at), 1.0) - under;
 #endif
 #ifdef NORMAL_DEPTH
   out_normal_depth = vec4(to_model * x.normal, x.depth);

@@ -1,0 +1,76 @@
+// Drawing into a host's framebuffer: a picture of our own, put there pixel by pixel against the host's depth buffer.
+#include "gl_state.h"
+#include "renderer_impl.h"
+
+namespace dupin {
+namespace {
+
+/// Window depth as a function of the depth along the view axis, x + y·depth + z/depth, for the host's projection and conventions.
+std::array<double, 3> host_depth_terms(const HostView& host, const ViewRays& view, const GlStateGuard& state) {
+  const auto& p = host.projection;
+  // With the host's z = −scale·depth, clip z is p10 z + p14 and clip w −z (or p15).
+  std::array<double, 3> ndc;
+  if (view.perspective) {
+    ndc = {p[10] / p[11], 0, -p[14] / (view.scale * p[11])};
+  } else {
+    ndc = {p[14] / p[15], -p[10] * view.scale / p[15], 0};
+  }
+  const auto [near, far] = state.depth_range();
+  const double slope = state.clip_zero_to_one() ? far - near : (far - near) / 2;
+  const double offset = state.clip_zero_to_one() ? near : (far + near) / 2;
+  return {ndc[0] * slope + offset, ndc[1] * slope, ndc[2] * slope};
+}
+
+/// Whether what is written to the framebuffer's first color buffer is converted from linear light.
+bool converts_to_srgb(const Gl& gl, const GlStateGuard& state) {
+  if (!state.srgb_conversion()) return false;
+  GLint encoding = GL_LINEAR;
+  const GLenum attachment = state.draw_framebuffer() ? GL_COLOR_ATTACHMENT0 : GL_BACK_LEFT;
+  gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment, GL_FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING, &encoding);
+  return encoding == GL_SRGB;
+}
+
+}  // namespace
+
+Status Renderer::Impl::composite(const HostView& host, const ViewRays& view, const DrawOptions& options, const GlStateGuard& state) {
+  const auto name = program("composite", {{"screen.vert"}, {"composite.frag"}, {}, {}, {{"colors", kVerticesUnit}, {"depths", kIndicesUnit}}});
+  if (!name) return name.status();
+  const auto uniform = [&](const char* n) { return gl->GetUniformLocation(*name, n); };
+  gl->BindFramebuffer(GL_DRAW_FRAMEBUFFER, state.draw_framebuffer());
+  const auto terms = host_depth_terms(host, view, state);
+  const auto [near, far] = state.depth_range();
+  gl->Uniform3f(uniform("host_depth"), static_cast<float>(terms[0]), static_cast<float>(terms[1]), static_cast<float>(terms[2]));
+  gl->Uniform2f(uniform("host_range"), static_cast<float>(std::min(near, far)), static_cast<float>(std::max(near, far)));
+  gl->Uniform3i(uniform("place"), host.viewport[0], host.viewport[1], host.viewport[3]);
+  gl->Uniform1i(uniform("encode"), converts_to_srgb(*gl, state) ? 0 : 1);
+  gl->Uniform1f(uniform("samples"), static_cast<float>(options.samples));
+  const auto bind = [&](int unit, Picture which) {
+    gl->ActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + unit));
+    gl->BindTexture(GL_TEXTURE_2D, picture(which).name());
+  };
+  bind(kVerticesUnit, kColorPicture);
+  bind(kIndicesUnit, kNormalDepthPicture);
+  state.use_host_output();
+  gl->Viewport(host.viewport[0], host.viewport[1], host.viewport[2], host.viewport[3]);
+  gl->Enablei(GL_BLEND, 0);
+  gl->BlendEquationSeparate(GL_FUNC_ADD, GL_FUNC_ADD);
+  gl->BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  gl->BindVertexArray(empty_array_.name());
+  gl->DrawArrays(GL_TRIANGLES, 0, 3);
+  return {};
+}
+
+Status Renderer::draw_into_host(Scene& scene, const HostView& host, const DrawOptions& options) {
+  auto view = view_rays(host.view, host.projection, host.viewport[2], host.viewport[3]);
+  if (!view) return view.status();
+  DrawOptions own = options;
+  own.outputs = kColor | kDepth;
+  own.background.reset();
+  const Status valid = check(own);
+  if (!valid.ok()) return valid;
+  const GlStateGuard state(*impl_->gl);
+  const Status drawn = impl_->draw_samples(scene.impl(), *view, own);
+  return drawn.ok() ? impl_->composite(host, *view, own, state) : drawn;
+}
+
+}  // namespace dupin
