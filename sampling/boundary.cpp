@@ -1,6 +1,7 @@
 #include "boundary.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -96,8 +97,30 @@ void flatten(const Trim& trim, double t0, double t1, bool backwards, std::vector
   }
 }
 
-void append_trim(const Part& part, const Trim& trim, const std::vector<ArcChain>& chains, bool with_uv, FaceLoop& loop,
-                 std::vector<Vec2>& polygon) {
+/// What a trim's curve in space and its pcurve on the surface are apart, as a displacement outwards along the surface.
+class Widening {
+ public:
+  Widening(const Surface& surface, const Trim& trim, const Edge& edge) : surface_(surface), trim_(trim), edge_(edge) {}
+
+  /// At the edge's parameter t, whose point in space is p; `along` is the loop's direction there.
+  Vec3 at(double t, const Vec3& p, const Vec3& along) const {
+    const Vec2 uv = point_at(trim_.pcurve, t);
+    const SurfaceJet jet = evaluate(surface_, uv.x, uv.y, 1);
+    const double gap = std::min(distance(jet.p, p), 2 * edge_.tolerance);
+    if (!(gap > kNoGap * (1 + length(p)))) return {};
+    // The face lies to the left of its loops in (u,v): outwards is T × n.
+    return normalized(cross(along, cross(jet.pu, jet.pv))) * gap;
+  }
+
+ private:
+  static constexpr double kNoGap = 1e-11;
+  const Surface& surface_;
+  const Trim& trim_;
+  const Edge& edge_;
+};
+
+void append_trim(const Part& part, const Surface& surface, const Trim& trim, const std::vector<ArcChain>& chains, bool with_uv,
+                 FaceLoop& loop, std::vector<Vec2>& polygon, std::vector<std::array<Vec3, 2>>& outward) {
   const Edge& edge = part.edges[trim.edge];
   const auto& arcs = chains[trim.edge].arcs;
   if (arcs.empty() || trim.degenerate) {
@@ -109,7 +132,27 @@ void append_trim(const Part& part, const Trim& trim, const std::vector<ArcChain>
     const ConicArc3& arc = arcs[trim.reversed ? arcs.size() - 1 - k : k];
     FaceArc face_arc{trim.reversed ? reversed(arc) : arc, !edge.smooth && !trim.seam, {}};
     if (with_uv) flatten(trim, arc.t0, arc.t1, trim.reversed, polygon, face_arc.uv);
-    if (!trim.seam) loop.arcs.push_back(face_arc);
+    if (trim.seam) continue;
+    loop.arcs.push_back(face_arc);
+    const ConicArc3& a = face_arc.arc;
+    const Vec3 middle = a.line ? (a.p0 + a.p2) * 0.5 : a.p1;
+    const Widening widening(surface, trim, edge);
+    outward.push_back({widening.at(trim.reversed ? a.t1 : a.t0, a.p0, middle - a.p0),
+                       widening.at(trim.reversed ? a.t0 : a.t1, a.p2, a.p2 - middle)});
+  }
+}
+
+/// Files are exact to a tolerance: an edge may lie off both its faces, and its projections onto them apart. Each face reaches out by
+/// as much as the edge is off it, so that no crack shows however near one looks. Arcs stay joined.
+void reach_over_gaps(FaceLoop& loop, const std::vector<std::array<Vec3, 2>>& outward) {
+  const std::size_t n = loop.arcs.size();
+  if (n < 2 || outward.size() != n) return;
+  std::vector<Vec3> joint(n);  // where arc i ends
+  for (std::size_t i = 0; i < n; ++i) joint[i] = (outward[i][1] + outward[(i + 1) % n][0]) * 0.5;
+  for (std::size_t i = 0; i < n; ++i) {
+    ConicArc3& arc = loop.arcs[i].arc;
+    const Vec3 &first = joint[(i + n - 1) % n], &last = joint[i];
+    arc.p0 += first, arc.p1 += (first + last) * 0.5, arc.p2 += last;
   }
 }
 
@@ -151,14 +194,18 @@ FaceBoundary face_boundary(const Part& part, const Face& face, const std::vector
   for (const Loop& trims : face.loops) {
     FaceLoop loop;
     std::vector<Vec2> polygon;
+    std::vector<std::array<Vec3, 2>> outward;
     bool broken_by_seam = false;
     for (const Trim& trim : trims) {
-      append_trim(part, trim, chains, with_uv, loop, polygon);
+      append_trim(part, part.surfaces[face.surface], trim, chains, with_uv, loop, polygon, outward);
       broken_by_seam |= trim.seam || trim.degenerate;
     }
     const bool single = trims.size() == 1 && !trims[0].degenerate && !trims[0].seam;
     if (single) loop.whole_ellipse = whole_ellipse(part.edges[trims[0].edge], loop.ellipse);
-    if (!broken_by_seam) close_gaps(loop);
+    if (!broken_by_seam) {
+      reach_over_gaps(loop, outward);
+      close_gaps(loop);
+    }
     if (!loop.arcs.empty()) boundary.loops.push_back(std::move(loop));
     if (with_uv) {
       for (Vec2 p : polygon) boundary.uv_box.add(p);

@@ -13,7 +13,7 @@ namespace {
 /// Halvings of one Bézier patch; a cell that is still too wrong then is reported by its bounds.
 constexpr int kMaxDepth = 36;
 /// Cells with a trim are drawn finer than the tolerance asks, in position: two faces' sheets meet there.
-constexpr double kTrimTolerance = 0.5;
+constexpr double kTrimTolerance = 0.1;
 
 /// A cell is grown by at most this part of itself to make room for its curved sides' chords.
 constexpr double kMostMargin = 0.35;

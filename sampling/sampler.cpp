@@ -15,7 +15,7 @@ namespace {
 
 /// Edges are approximated to this part of the tolerance that holds for faces: both faces of an edge follow the same chain, and what
 /// differs from the file's curve is the picture's outline.
-constexpr double kEdgeTolerance = 0.1;
+constexpr double kEdgeTolerance = 0.02;
 constexpr double kTwoPi = 6.28318530717958647692;
 
 /// One face's DPs on their own, so that faces can be made in any order.
