@@ -125,6 +125,10 @@ Status encode_dp(const PartDps& part, const QuadricDp& dp, const Vec3& anchor, s
   if (!dp.planar) {
     texels.push_back(texel(dp.lambda_u, dp.lambda_v, dp.a, dp.b));
     texels.push_back(texel(dp.c, dp.z_lo, dp.z_hi, 0));
+    if (dp.cubic != std::array<double, 4>{}) {
+      meta |= kCubic;
+      texels.push_back(texel(dp.cubic[0], dp.cubic[1], dp.cubic[2], dp.cubic[3]));
+    }
   }
   if (pieces) {
     texels.push_back({});

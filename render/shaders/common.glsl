@@ -4,7 +4,7 @@
 //   The ray of picture point (X, Y) is  S + start (X P + Y Q) + t (F + spread (X P + Y Q)),  t its depth beyond start_depth.
 // slots, 12 texels for each DP of the frame, the DP's frame and this frame's camera together (prepare.vert):
 //   0 s, meta | 1 F, pieces' texel | 2 P, color | 3 Q, rounding | 4 λu λv a b | 5 c, z lo, z hi, face
-//   6, 7 footprint | 8, 9 rows x, y: clip coordinates are row·(p, 1) | 10 row f: the depth | 11 primitive, scale ratio, -, -
+//   6, 7 footprint | 8, 9 rows x, y: clip coordinates are row·(p, 1) | 10 row f: the depth | 11 primitive, scale ratio, cubic terms' texel, -
 uniform usamplerBuffer heap;
 uniform samplerBuffer instances;
 uniform usamplerBuffer slots;
@@ -12,7 +12,7 @@ uniform float start, spread, start_depth;
 
 const int kSlotTexels = 12;
 const int kInstanceTexels = 10;
-const uint kPlanar = 1u, kFlipped = 2u, kRectangle = 4u, kPieces = 8u, kReferenceInside = 16u, kFeaturePieces = 32u;
+const uint kPlanar = 1u, kFlipped = 2u, kRectangle = 4u, kPieces = 8u, kReferenceInside = 16u, kFeaturePieces = 32u, kCubic = 1u << 14;
 // Numbers in the id picture: 0 background; slot + 1, with kSecondRoot if the ray met the quadric there; or a triangle + 1 with kTriangle.
 const uint kTriangle = 0x80000000u, kSecondRoot = 0x40000000u, kIdMask = 0x3fffffffu;
 

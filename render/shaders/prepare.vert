@@ -43,6 +43,8 @@ void main() {
     depth = heap_texel(at + 1);
     at += 2;
   }
+  uint cubic = 0u;  // where the normal's cubic terms are
+  if ((meta & kCubic) != 0u) cubic = uint(at++);
   // How far rounding may have moved a point: neighbours are widened by it, so that no ray passes between them.
   vec4 far = max(abs(c01), abs(c23));
   float extent = max(max(far.x, far.y), max(far.z, far.w));
@@ -60,5 +62,5 @@ void main() {
   slot8 = words(row_x * m, floatBitsToUint(-dot(row_x, r)));
   slot9 = words(row_y * m, floatBitsToUint(-dot(row_y, r)));
   slot10 = words(row_f * m, floatBitsToUint(start_depth - dot(row_f, r)));
-  slot11 = uvec4(item.z, floatBitsToUint(lo.w), 0u, 0u);
+  slot11 = uvec4(item.z, floatBitsToUint(lo.w), cubic, 0u);
 }

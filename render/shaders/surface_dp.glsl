@@ -38,7 +38,15 @@ Surface surface_at(uint number, vec2 at) {
 
   vec3 right = p * axis_scale.x, up = q * axis_scale.y;
   vec3 back = spread * (axis_offset.x * right + axis_offset.y * up) - f;
-  vec3 gradient = vec3(dot(g, right), dot(g, up), dot(g, back));
+  vec3 normal_form = g;
+  uint cubic = texelFetch(slots, slot * kSlotTexels + 11).z;
+  if (cubic != 0u) {
+    // The normal's own third-order terms: ∇F − ∇C.
+    vec4 k = heap_texel(int(cubic));
+    normal_form.xy -= vec2(3.0 * k.x * x.x * x.x + 2.0 * k.y * x.x * x.y + k.z * x.y * x.y,
+                           k.y * x.x * x.x + 2.0 * k.z * x.x * x.y + 3.0 * k.w * x.y * x.y);
+  }
+  vec3 gradient = vec3(dot(normal_form, right), dot(normal_form, up), dot(normal_form, back));
   float size = length(gradient), outside = (meta & kFlipped) != 0u ? -1.0 : 1.0;
 
   Surface result;
