@@ -19,6 +19,7 @@ namespace {
 
 // A pcurve may leave its edge by this part of the piece's size before a better one is looked for: far below a pixel.
 constexpr double kAgreement = 1e-6;
+constexpr int kAllKnots = 100;  // no spline is as smooth
 // What a fitted pcurve may add.
 constexpr double kFit = 1e-8;
 // A pcurve that is further off says nothing, not even on which side of a seam its edge lies.
@@ -99,16 +100,22 @@ class FaceBuilder {
     return reparametrized(*stored.curve, stored.t0 - b * edge.t0, b);
   }
 
+  // Sampled between all knots of either curve: that is where they may part.
   double deviation_of(const Curve2& pcurve, const Edge& edge) const {
-    const auto* spline = std::get_if<Bspline3>(&edge.curve->geometry);
-    const int samples = 8 + (spline ? std::min<int>(40, static_cast<int>(spline->poles.size())) : 0);
+    std::vector<double> stops = breaks(*edge.curve, edge.t0, edge.t1, kAllKnots);
+    const std::vector<double> more = breaks(pcurve, edge.t0, edge.t1, kAllKnots);
+    stops.insert(stops.end(), more.begin(), more.end());
+    stops.push_back(edge.t0), stops.push_back(edge.t1);
+    std::sort(stops.begin(), stops.end());
+    const int pieces = stops.size() > 8 ? 4 : 12;
     double worst = 0;
-    for (int i = 0; i <= samples; ++i) {
-      const double t = edge.t0 + (edge.t1 - edge.t0) * i / samples;
-      const Vec2 q = point_at(pcurve, t);
-      const double d = distance(point_at(surface_, q.x, q.y), point_at(*edge.curve, t));
-      if (!(d <= worst)) worst = std::isfinite(d) ? d : std::numeric_limits<double>::infinity();
-    }
+    for (std::size_t i = 0; i + 1 < stops.size(); ++i)
+      for (int k = 0; k < pieces + (i + 2 == stops.size() ? 1 : 0); ++k) {
+        const double t = stops[i] + (stops[i + 1] - stops[i]) * k / pieces;
+        const Vec2 q = point_at(pcurve, t);
+        const double d = distance(point_at(surface_, q.x, q.y), point_at(*edge.curve, t));
+        if (!(d <= worst)) worst = std::isfinite(d) ? d : std::numeric_limits<double>::infinity();
+      }
     return worst;
   }
 
@@ -121,7 +128,12 @@ class FaceBuilder {
       if (domain_.empty()) domain_ = search_domain(surface_, edges_, task_.wires);
       fitted = fit_pcurve(surface_, domain_, *edge.curve, edge.t0, edge.t1, kFit * size_);
     }
-    if (!fitted || (pcurve && passes_elsewhere(*fitted, *pcurve, edge))) return;
+    if (!fitted) return;
+    if (pcurve) {
+      const double middle = (edge.t0 + edge.t1) / 2;
+      translate(*fitted, whole_periods(surface_, point_at(*pcurve, middle) - point_at(*fitted, middle)));
+      if (passes_elsewhere(*fitted, *pcurve, edge)) return;
+    }
     const double reached = deviation_of(*fitted, edge);
     if (pcurve && !(reached < 0.5 * deviation)) return;
     if (pcurve) ++result_.refitted;
@@ -149,6 +161,7 @@ class FaceBuilder {
       std::swap(loops_[0], loops_[static_cast<std::size_t>(outer)]);
       std::swap(areas[0], areas[static_cast<std::size_t>(outer)]);
       if (areas[0] < 0) turn_outer_loop();
+      bring_inner_loops_over();
     }
     for (auto& uses : loops_) {
       Loop loop;
@@ -165,6 +178,30 @@ class FaceBuilder {
       char text[80];
       std::snprintf(text, sizeof text, "its boundary does not close, by %.3g", result_.largest_gap);
       result_.repair = text;
+    }
+  }
+
+  Box2 loop_box(const std::vector<EdgeUse>& loop) const {
+    Box2 box;
+    for (const EdgeUse& use : loop) {
+      const Box2 piece = bounds(use.trim.pcurve, use.t0, use.t1);
+      box.add(piece.lo);
+      box.add(piece.hi);
+    }
+    return box;
+  }
+
+  // On a periodic surface a hole may have come out whole turns away from the outline that it is in.
+  void bring_inner_loops_over() {
+    if (loops_.size() < 2 || (period_u(surface_) == 0 && period_v(surface_) == 0)) return;
+    const Box2 outer = loop_box(loops_[0]);
+    for (std::size_t i = 1; i < loops_.size(); ++i) {
+      const Vec2 center = loop_box(loops_[i]).center();
+      Vec2 by = whole_periods(surface_, outer.center() - center);
+      if (center.x >= outer.lo.x && center.x <= outer.hi.x) by.x = 0;
+      if (center.y >= outer.lo.y && center.y <= outer.hi.y) by.y = 0;
+      if (by == Vec2{}) continue;
+      for (EdgeUse& use : loops_[i]) translate(use.trim.pcurve, by);
     }
   }
 

@@ -28,17 +28,12 @@ Metric metric_of(const Surface& surface, const std::vector<EdgeUse>& uses) {
 Vec2 extent_of(const std::vector<EdgeUse>& uses) {
   Box2 box;
   for (const EdgeUse& use : uses)
-    for (const double t : {use.t0, (use.t0 + use.t1) / 2, use.t1}) box.add(point_at(use.trim.pcurve, t));
+    for (int i = 0; i <= 8; ++i) box.add(point_at(use.trim.pcurve, use.t0 + (use.t1 - use.t0) * i / 8));
   return box.size();
 }
 
 // Part of the loop's own extent that a gap may have without being filled in: slivers are thinner than any tolerance.
 constexpr double kGapOfExtent = 0.002;
-
-Vec2 whole_periods(Vec2 d, double period_u, double period_v) {
-  return {period_u > 0 ? std::round(d.x / period_u) * period_u : 0,
-          period_v > 0 ? std::round(d.y / period_v) * period_v : 0};
-}
 
 // The width of a domain whose opposite sides meet in space without the surface being periodic; 0 if they do not.
 double closure(const Surface& surface, bool in_u, double tolerance) {
@@ -58,8 +53,7 @@ double closure(const Surface& surface, bool in_u, double tolerance) {
 class Assembly {
  public:
   Assembly(const Surface& surface, std::vector<EdgeUse> uses, double tolerance)
-      : surface_(surface), left_(std::move(uses)), tolerance_(tolerance), metric_(metric_of(surface, left_)), extent_(extent_of(left_)),
-        period_u_(period_u(surface)), period_v_(period_v(surface)) {}
+      : surface_(surface), left_(std::move(uses)), tolerance_(tolerance), metric_(metric_of(surface, left_)), extent_(extent_of(left_)) {}
 
   WireLoops run() {
     while (!left_.empty()) {
@@ -84,7 +78,7 @@ class Assembly {
 
   double distance_to(const EdgeUse& use, const EdgeUse& before) const {
     const Vec2 d = use.file_start - before.file_end;
-    return metric_(d - whole_periods(d, period_u_, period_v_)) + 1e-3 * metric_(whole_periods(d, period_u_, period_v_));
+    return metric_(d - whole_periods(surface_, d)) + 1e-3 * metric_(whole_periods(surface_, d));
   }
 
   // The use that begins where the loop now ends: at the same vertex, nearest in parameters. None if the loop
@@ -130,7 +124,7 @@ class Assembly {
 
   void append(std::vector<EdgeUse>& loop, EdgeUse use) {
     const Vec2 end = loop.back().end(), d = use.start() - end;
-    const Vec2 turns = whole_periods(d, period_u_, period_v_);
+    const Vec2 turns = whole_periods(surface_, d);
     if (turns.x != 0 || turns.y != 0) translate(use.trim.pcurve, -turns);
     if (metric_(d - turns) > 10 * tolerance_) move_to_other_side(use, end);
     bridge(loop, use.start() - end, use.start());
@@ -152,19 +146,19 @@ class Assembly {
 
   void close(std::vector<EdgeUse>& loop) {
     const Vec2 d = loop.front().start() - loop.back().end();
-    const Vec2 turns = whole_periods(d, period_u_, period_v_);
+    const Vec2 turns = whole_periods(surface_, d);
     if (turns.x != 0 || turns.y != 0) result_.winding = true;
     else bridge(loop, d, loop.front().start());
   }
 
   // Joins the loop's end with `to`, which lies `d` further on, where they differ.
   void bridge(std::vector<EdgeUse>& loop, Vec2 d, Vec2 to) {
+    if (length(d) <= 1e-14 * (1 + length(to))) return;
     if (metric_(d) <= tolerance_ && std::abs(d.x) <= kGapOfExtent * extent_.x &&
         std::abs(d.y) <= kGapOfExtent * extent_.y) {
       result_.gap = std::max(result_.gap, metric_(d));
       return;
     }
-    if (d == Vec2{}) return;
     const Vec2 from = loop.back().end();
     const Vec3 p = point_at(surface_, from.x, from.y);
     double off = 0;  // nothing at a pole: a collapsed side stays at one point all the way
@@ -188,7 +182,6 @@ class Assembly {
   double tolerance_;
   Metric metric_;
   Vec2 extent_;
-  double period_u_, period_v_;
   WireLoops result_;
 };
 
@@ -197,6 +190,11 @@ class Assembly {
 WireLoops assemble_loops(const Surface& surface, std::vector<EdgeUse> uses, double tolerance) {
   for (const EdgeUse& use : uses) tolerance = std::max(tolerance, use.tolerance);
   return Assembly(surface, std::move(uses), tolerance).run();
+}
+
+Vec2 whole_periods(const Surface& surface, Vec2 step) {
+  const double turn_u = period_u(surface), turn_v = period_v(surface);
+  return {turn_u > 0 ? std::round(step.x / turn_u) * turn_u : 0, turn_v > 0 ? std::round(step.y / turn_v) * turn_v : 0};
 }
 
 double signed_area(const std::vector<EdgeUse>& loop) {

@@ -35,6 +35,9 @@ struct WireLoops {
 /// larger than the tolerance by straight collapsed sides.
 WireLoops assemble_loops(const Surface& surface, std::vector<EdgeUse> uses, double tolerance);
 
+/// The part of a step in parameters that is whole turns of a periodic surface.
+Vec2 whole_periods(const Surface& surface, Vec2 step);
+
 /// Twice the area that a loop encloses in the parameter plane, positive when counter-clockwise.
 double signed_area(const std::vector<EdgeUse>& loop);
 

@@ -3,7 +3,6 @@
 #include <BRepAdaptor_Surface.hxx>
 #include <BRep_Tool.hxx>
 #include <TopExp.hxx>
-#include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <gtest/gtest.h>
@@ -11,38 +10,12 @@
 #include <random>
 
 #include "../../cad_import/reader/geometry.h"
-#include "../../cad_import/reader/import_shapes.h"
-#include "../../cad_import/reader/part_builder.h"
 #include "../../cad_import/reader/topology.h"
 #include "files.h"
+#include "occt_files.h"
 
 namespace dupin::reader {
 namespace {
-
-// A family of surfaces or curves each, and some of everything.
-const char* const kFiles[] = {
-    "cad/nist/nist_ctc_05_asme1_ap242.stp", "cad/nist/nist_ftc_06_asme1_ap242-e2.stp", "cad/occt/linkrods.step",
-    "cad/occt/screw.step",                  "cad/occt/MODERN_Sink_1.brep",             "cad/occt/CrankArm.brep",
-    "cad/occt/hammer.iges",                 "cad/freecad/SOT23.igs",                   "cad/freecad/cylinderSeam10.brep",
-    "cad/freecad/Y_Rod_Mount.brep",         "cad/tigl/nacelle.stp",                    "cad/tigl/curvesToSurfaceContinuous.brep",
-    "cad/truck/abc-0035.step",              "cad/gmsh-doc/component8.step",            "cad/kicad/SMA_Amphenol_132291-12_Vertical.step",
-    "nurbs/converted/teapot.brep",          "nurbs/converted/gismo_sphere_u6p.step",   "nurbs/converted/v5_extrusions.step",
-    "nurbs/converted/v4_WishBone.step",     "nurbs/converted/v1_Camera_visible.step"};
-
-std::optional<SourceDocument> read(const std::string& path) {
-  ImportRequest request;
-  request.path = path;
-  Result<SourceDocument> document = read_document(request, [](const char*, double) {});
-  if (!document.ok()) return std::nullopt;
-  return std::move(*document);
-}
-
-PartSource all_faces(const TopoDS_Shape& shape) {
-  PartSource source;
-  for (TopExp_Explorer e(shape, TopAbs_FACE); e.More(); e.Next())
-    source.faces.push_back({TopoDS::Face(e.Current()), {}, {}});
-  return source;
-}
 
 // Differences relative to the values' own size and that of their neighbourhood.
 void compare(const Vec3& ours, const gp_XYZ& theirs, double scale, double tolerance, const char* what) {
@@ -106,12 +79,12 @@ void compare_edges(const TopoDS_Shape& shape) {
 }
 
 void compare_file(const std::string& path) {
-  const std::optional<SourceDocument> document = read(path);
+  const std::optional<SourceDocument> document = test::read_document(path);
   ASSERT_TRUE(document) << path;
   std::mt19937 random(7);
   std::size_t faces = 0;
   for (const SourceItem& item : document->items) {
-    const BuiltPart built = build_part(all_faces(item.shape));
+    const BuiltPart built = test::build(item.shape);
     for (std::size_t i = 0; i < built.part.faces.size(); ++i, ++faces) {
       SCOPED_TRACE("face " + std::to_string(faces));
       const Face& face = built.part.faces[i];
@@ -123,13 +96,13 @@ void compare_file(const std::string& path) {
   EXPECT_GT(faces, 0u);
 }
 
-class Evaluators : public testing::TestWithParam<const char*> {};
+class Evaluators : public testing::TestWithParam<std::string> {};
 
 TEST_P(Evaluators, AgreeWithOcct) {
   DUPIN_NEED_DATA(path, GetParam());
   compare_file(path);
 }
-INSTANTIATE_TEST_SUITE_P(Files, Evaluators, testing::ValuesIn(kFiles));
+INSTANTIATE_TEST_SUITE_P(Files, Evaluators, testing::ValuesIn(test::varied_files()));
 
 TEST(EvaluatorsOfSamples, AgreeWithOcct) {
   for (const char* name : {"bracket.step", "assembly.step", "freeform.step"}) compare_file(test::sample(name));
