@@ -75,9 +75,12 @@ class Newton {
   std::optional<Vec2> run(Vec2 q) const {
     q = confined(q, box_, periodic_u_, periodic_v_);
     SurfaceJet jet = evaluate(surface_, q.x, q.y, 2);
+    const auto width = [](double lo, double hi) { return std::isfinite(hi - lo) ? hi - lo : 1; };
+    const double size = length(p_) + length(jet.p) + length(jet.pu) * width(box_.lo.x, box_.hi.x) +
+                        length(jet.pv) * width(box_.lo.y, box_.hi.y);
     for (int i = 0; i < kInvertSteps; ++i) {
       const Vec2 step = proposal(jet, q);
-      if (settled(jet, step)) return q;
+      if (settled(jet, step, size)) return q;
       double factor = 1;
       const double before = distance(jet.p, p_);
       Vec2 next = q;
@@ -86,7 +89,7 @@ class Newton {
         next = confined(q + step * factor, box_, periodic_u_, periodic_v_);
         there = evaluate(surface_, next.x, next.y, 2);
         if (distance(there.p, p_) < before) break;
-        if (factor < 1e-6) return stationary(jet, q) ? std::optional(q) : std::nullopt;
+        if (factor < 1e-6) return stationary(jet, q, size) ? std::optional(q) : std::nullopt;
       }
       q = next;
       jet = there;
@@ -114,15 +117,15 @@ class Newton {
   static bool pinned(double t, double way, double lo, double hi, bool periodic) {
     return !periodic && ((t <= lo && way <= 0) || (t >= hi && way >= 0));
   }
-  /// A step that moves the point by no more than its coordinates' rounding.
-  bool settled(const SurfaceJet& jet, Vec2 step) const {
+  /// A step that moves the point by no more than rounding, at the surface's size.
+  bool settled(const SurfaceJet& jet, Vec2 step, double size) const {
     const double moved = length(jet.pu) * std::abs(step.x) + length(jet.pv) * std::abs(step.y);
-    return moved <= 4e-16 * (std::abs(jet.p.x) + std::abs(jet.p.y) + std::abs(jet.p.z)) + 1e-15 * distance(jet.p, p_);
+    return moved <= 4e-16 * size + 1e-15 * distance(jet.p, p_);
   }
   /// No free direction leads nearer: the distance is all rounding, or perpendicular to the surface to half its digits.
-  bool stationary(const SurfaceJet& jet, Vec2 q) const {
-    const double away = distance(jet.p, p_), rounding = 1e-14 * (length(jet.p) + length(p_));
-    return away <= rounding || slope(jet, q) <= 1e-7 * away;
+  bool stationary(const SurfaceJet& jet, Vec2 q, double size) const {
+    const double away = distance(jet.p, p_);
+    return away <= 1e-14 * size || slope(jet, q) <= 1e-7 * away;
   }
   /// The slope of half the squared distance along the free directions, in space.
   double slope(const SurfaceJet& jet, Vec2 q) const {
@@ -139,6 +142,24 @@ class Newton {
   bool periodic_u_, periodic_v_;
 };
 
+/// What a sweep's other parameter must be for the guess's point of the profile to come nearest to p.
+Vec2 better_guess(const Revolution& s, const Vec3& p, Vec2 guess) {
+  const auto across = [&s](const Vec3& q) {
+    const Vec3 d = q - s.axis_origin;
+    return d - s.axis_direction * dot(d, s.axis_direction);
+  };
+  const Vec3 from = across(point_at(s.profile, guess.y)), to = across(p);
+  const double sine = dot(s.axis_direction, cross(from, to)), cosine = dot(from, to);
+  return {angle_of(sine, cosine, dot(from, from) + dot(to, to), guess.x), guess.y};
+}
+Vec2 better_guess(const Extrusion& s, const Vec3& p, Vec2 guess) {
+  return {guess.x, dot(s.direction, p - point_at(s.profile, guess.x))};
+}
+template <class Other>
+Vec2 better_guess(const Other&, const Vec3&, Vec2 guess) {
+  return guess;
+}
+
 }  // namespace
 
 std::optional<Vec2> invert(const Surface& surface, const Vec3& p, Vec2 guess) {
@@ -147,7 +168,7 @@ std::optional<Vec2> invert(const Surface& surface, const Vec3& p, Vec2 guess) {
         if constexpr (requires { closed_form(geometry, p, guess); })
           return closed_form(geometry, p, guess);
         else
-          return Newton(surface, p).run(guess);
+          return Newton(surface, p).run(better_guess(geometry, p, guess));
       },
       surface.geometry);
 }

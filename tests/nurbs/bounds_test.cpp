@@ -132,6 +132,21 @@ TEST(Invert, UnwrapsAnglesTowardsTheGuess) {
   EXPECT_EQ(invert({Sphere{{}, 2}}, {0, 0, 2}, {0.77, 1})->x, 0.77);
 }
 
+TEST(Invert, FindsPointsOfARevolutionFromItsProfileAlone) {
+  // The profile starts on the axis, at the origin of space; the azimuth is not guessed.
+  Bspline3 profile;
+  profile.degree = 2;
+  profile.knots = {0, 0, 0, 1, 1, 1};
+  profile.poles = {{0, 0, 0}, {2, 0, 0}, {2, 0, 3}};
+  const Surface bowl{Revolution{{}, {0, 0, 1}, {profile}}};
+  for (const double u : {0.1, 1.9, 3.0, 5.5})
+    for (const double v : {0.0, 1e-9, 0.3, 1.0}) {
+      const auto found = invert(bowl, point_at(bowl, u, v), {std::numbers::pi, v + (v == 0 ? 0 : 0.01)});
+      ASSERT_TRUE(found);
+      EXPECT_LE(distance(point_at(bowl, found->x, found->y), point_at(bowl, u, v)), 1e-13) << u << ", " << v;
+    }
+}
+
 TEST(Invert, SaysWhenItDidNotConverge) {
   // Nothing is nearest on a surface that is not finite.
   BsplineSurface s;
