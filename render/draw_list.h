@@ -30,7 +30,8 @@ constexpr std::uint32_t kCurvedKind = 1, kPlanesKind = 2, kLinesKind = 4, kArcsK
 constexpr std::uint32_t kPrismKind = 32;      ///< curved: too near to the eye for a proxy in the picture's plane
 constexpr std::uint32_t kFrontOnlyKind = 64;  ///< curved: only its outer side can be seen
 
-/// Curved, bounded by this many arcs and nothing else, as most cells of free-form faces are: the arcs go with the proxy.
+constexpr std::uint32_t kFeaturesKind = 1024;  ///< curved: has feature edges
+/// Curved, bounded by this many arcs that are no feature edges and nothing else, as most cells of free-form faces are: the arcs go with the proxy.
 constexpr std::uint32_t kFlatArcsShift = 7, kFlatArcsKind = 7u << kFlatArcsShift, kMostFlatArcs = 4;
 
 /// Consecutive items of one kind.

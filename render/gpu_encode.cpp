@@ -79,7 +79,7 @@ std::uint32_t features_first(const std::vector<Piece>& pieces, std::uint32_t fir
   return features;
 }
 
-void encode_pieces(const PartDps& part, const QuadricDp& dp, std::vector<Texel>& texels, std::uint32_t& meta) {
+void encode_pieces(const PartDps& part, const QuadricDp& dp, std::vector<Texel>& texels) {
   const std::uint32_t lines = features_first(part.lines, dp.first_line, dp.lines, [&](const LinePiece& p) {
     texels.push_back(texel(p.p0.x, p.p0.y, p.p1.x, p.p1.y));
   });
@@ -94,7 +94,6 @@ void encode_pieces(const PartDps& part, const QuadricDp& dp, std::vector<Texel>&
       });
   const auto pack = [](std::uint32_t l, std::uint32_t a, std::uint32_t e) { return l | a << 12 | e << 24; };
   const std::size_t own = texels.size() - dp.lines - 2u * dp.arcs - 2u * dp.ellipses - dp.planes - 1;
-  if (lines || arcs || ellipses) meta |= kFeaturePieces;
   texels[own] = {pack(dp.lines, dp.arcs, dp.ellipses), pack(lines, arcs, ellipses), bits(dp.reference.x),
                  bits(dp.reference.y)};
 }
@@ -136,8 +135,7 @@ Status encode_dp(const PartDps& part, const QuadricDp& dp, const Vec3& anchor, s
         features_first(part.planes, dp.first_plane, dp.planes,
                        [&](const ClipPlane& p) { texels.push_back(texel(p.n.x, p.n.y, p.n.z, p.d)); });
     meta |= static_cast<std::uint32_t>(dp.planes) << kPlaneCountShift | features << kFeaturePlaneShift;
-    if (features) meta |= kFeaturePieces;
-    encode_pieces(part, dp, texels, meta);
+    encode_pieces(part, dp, texels);
   }
   texels[start][3] = meta;
   return {};

@@ -15,7 +15,7 @@
 //   then the planes (n, d), lines (p0, p1), arcs (p0, p1; p2, w, 0) and ellipses (center, mxx, mxy; myy, 0,
 //   0, 0), each kind with its feature edges first.
 //
-// meta: flags in bits 0–5 and 14, the quaternion's largest part in bits 6–7, feature_sides in bits 8–13, planes in
+// meta: flags in bits 0–4 and 14, the quaternion's largest part in bits 6–7, feature_sides in bits 8–13, planes in
 // bits 16–23 and those of them that are feature edges in bits 24–31.
 #ifndef DUPIN_RENDER_GPU_ENCODE_H
 #define DUPIN_RENDER_GPU_ENCODE_H
@@ -32,7 +32,7 @@ namespace dupin {
 using Texel = std::array<std::uint32_t, 4>;
 
 constexpr std::uint32_t kPlanar = 1, kFlipped = 2, kRectangle = 4, kPieces = 8,
-                        kReferenceInside = 16, kFeaturePieces = 32, kCubic = 1u << 14;  // meta's flags
+                        kReferenceInside = 16, kCubic = 1u << 14;  // meta's flags
 constexpr std::uint32_t kLargestPartShift = 6, kFeatureSidesShift = 8, kPlaneCountShift = 16,
                         kFeaturePlaneShift = 24;
 constexpr std::uint32_t kMaxPlanes = 255, kMaxLines = 4095, kMaxArcs = 4095, kMaxEllipses = 255;

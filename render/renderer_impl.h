@@ -59,6 +59,7 @@ class Renderer::Impl {
     unsigned pictures = 0;
     int samples = 1;    ///< > 1: the color picture holds this many passes' sum
     bool first = true;  ///< of them
+    bool edges() const { return options->edges && (pictures & 1U << kColorPicture); }
   };
   /// Makes room for pictures of this size; ids and depth always.
   Status prepare_targets(int width, int height, unsigned pictures);
@@ -87,7 +88,7 @@ class Renderer::Impl {
   void upload_list(const Scene::Impl& scene);
   Status fill_slots();
   Status draw_visibility(const Pass& pass);
-  Status draw_dps(const ViewRays& view);
+  Status draw_dps(const Pass& pass);
   Status draw_triangles(const Pass& pass);
   Status shade(const Pass& pass);
   Status begin_shading(const Pass& pass);

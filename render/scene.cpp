@@ -67,7 +67,7 @@ Status pack_dps(const Part& source, const PartDps& dps, ScenePart& part, SceneIn
   }
   const std::vector<std::uint32_t> numbers = number_faces(source.faces.size(), drawn, part.drawn_faces);
   for (const QuadricDp& dp : dps.dps) {
-    DpBounds bounds = dp_bounds(dp, part.anchor);
+    DpBounds bounds = dp_bounds(dps, dp, part.anchor);
     bounds.record = static_cast<std::uint32_t>(package.heap.size());
     const Status status = encode_dp(dps, dp, part.anchor, numbers[dp.face], package.heap);
     if (!status.ok()) return status;
@@ -135,18 +135,35 @@ void place(const Model& model, const Instance& instance, const std::vector<std::
   scene.instances.push_back(std::move(placed));
 }
 
+bool has_features(const PartDps& part, const QuadricDp& dp) {
+  const auto any = [](const auto& pieces, std::uint32_t first, std::uint32_t count) {
+    for (std::uint32_t i = first; i < first + count; ++i)
+      if (pieces[i].feature) return true;
+    return false;
+  };
+  return (dp.feature_sides & 63) || any(part.planes, dp.first_plane, dp.planes) || any(part.lines, dp.first_line, dp.lines) ||
+         any(part.arcs, dp.first_arc, dp.arcs) || any(part.ellipses, dp.first_ellipse, dp.ellipses);
+}
+
+/// See draw_list.h.
+std::uint32_t dp_kind(const PartDps& part, const QuadricDp& dp) {
+  std::uint32_t kind = (dp.planes > 0) * kPlanesKind | (dp.lines > 0) * kLinesKind | (dp.arcs > 0) * kArcsKind |
+                       (dp.ellipses > 0) * kEllipsesKind;
+  // A region without pieces that is all outside: some kind must look at `reference_inside`.
+  if (!dp.reference_inside && (kind & ~kPlanesKind) == 0) kind |= kLinesKind;
+  if (dp.planar) return kind;
+  const bool features = has_features(part, dp);
+  if (kind == kArcsKind && dp.arcs <= kMostFlatArcs && !features) kind |= static_cast<std::uint32_t>(dp.arcs) << kFlatArcsShift;
+  return kind | kCurvedKind | features * kFeaturesKind;
+}
+
 }  // namespace
 
-DpBounds dp_bounds(const QuadricDp& dp, const Vec3& anchor) {
+DpBounds dp_bounds(const PartDps& part, const QuadricDp& dp, const Vec3& anchor) {
   const std::array<Vec3, 8> box = corners(dp);
   DpBounds bounds;
   bounds.planar = dp.planar;
-  bounds.kind = !dp.planar * kCurvedKind | (dp.planes > 0) * kPlanesKind | (dp.lines > 0) * kLinesKind |
-                (dp.arcs > 0) * kArcsKind | (dp.ellipses > 0) * kEllipsesKind;
-  if (bounds.kind == (kCurvedKind | kArcsKind) && dp.arcs <= kMostFlatArcs)
-    bounds.kind |= static_cast<std::uint32_t>(dp.arcs) << kFlatArcsShift;
-  // A region without pieces that is all outside: some kind must look at `reference_inside`.
-  if (!dp.reference_inside && bounds.kind <= (kCurvedKind | kPlanesKind)) bounds.kind |= kLinesKind;
+  bounds.kind = dp_kind(part, dp);
   bounds.color_face = dp.face;
   Box3 local;
   for (const Vec3& c : box) local.add(c);

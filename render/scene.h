@@ -22,7 +22,7 @@ struct DpBounds {
   bool planar = false;
   std::uint32_t kind = 0;  ///< see draw_list.h; without what depends on the camera
 };
-DpBounds dp_bounds(const QuadricDp& dp, const Vec3& anchor);
+DpBounds dp_bounds(const PartDps& part, const QuadricDp& dp, const Vec3& anchor);
 
 struct ScenePart {
   Vec3 anchor;

@@ -46,7 +46,7 @@ struct Variant {
 
 Variant shading_variant(unsigned pictures, const DrawOptions& options, bool mesh) {
   const bool color = pictures & 1U << kColorPicture, curves = pictures & 1U << kCurvaturePicture;
-  const bool numbers = pictures & 1U << kNumbersPicture, edges = color && options.edges && !mesh;
+  const bool numbers = pictures & 1U << kNumbersPicture;
   Variant v;
   v.key = mesh ? "shade mesh" : "shade";
   int location = 0;
@@ -59,14 +59,12 @@ Variant shading_variant(unsigned pictures, const DrawOptions& options, bool mesh
   if (curves || (color && needs_curvature(options.shading))) v.define("CURVES");
   if (numbers || (color && options.shading == Shading::primitive)) v.define("NUMBERS");
   if (numbers) v.define("NUMBERS_PICTURE");
-  if (edges) v.define("EDGES");
   v.text.vertex = {"screen.vert"};
   v.text.fragment = {"shade_head.glsl", "quadric.glsl"};
   if (mesh) {
     v.text.fragment.push_back("surface_mesh.glsl");
     v.text.units.push_back({"colors", kHeapUnit});  // triangles need no heap
   } else {
-    if (edges) v.text.fragment.push_back("edges.glsl");
     v.text.fragment.push_back("surface_dp.glsl");
   }
   v.text.fragment.push_back("looks.glsl");
@@ -147,7 +145,6 @@ Status Renderer::Impl::shade_with(const Pass& pass, bool mesh) {
   const auto uniform = [&](const char* n) { return gl->GetUniformLocation(*name, n); };
   const Color under = pass.samples > 1 ? premultiplied_background(options) : Color{0, 0, 0, 0};
   gl->Uniform4f(uniform("under"), under.r, under.g, under.b, under.a);
-  gl->Uniform1f(uniform("edge_half_width"), static_cast<float>(options.edge_width_px / 2));
   gl->Uniform1f(uniform("curvature_scale"), static_cast<float>(curvature_scale(*pass.scene, options)));
   gl->Uniform1ui(uniform("only_color"), options.color ? srgb_word(*options.color) : 0);
   gl->Uniform1i(uniform("run_count"), static_cast<GLint>(list_.runs.size()));

@@ -5,10 +5,11 @@ namespace dupin {
 namespace {
 
 constexpr std::size_t kSlotBytes = 12 * 16;
+constexpr std::size_t kMostSlots = (1U << 24) - 1;  // the id picture has 24 bits for them
 constexpr const char* kSlotOutputs[] = {"slot0", "slot1", "slot2", "slot3", "slot4",  "slot5",
                                         "slot6", "slot7", "slot8", "slot9", "slot10", "slot11"};
 
-ProgramText dp_program(std::uint32_t kind) {
+ProgramText dp_program(std::uint32_t kind, bool edges) {
   ProgramText text;
   const bool curved = kind & kCurvedKind;
   const std::pair<std::uint32_t, const char*> names[] = {{kPlanesKind, "PLANES"}, {kLinesKind, "LINES"}, {kArcsKind, "ARCS"},
@@ -16,6 +17,7 @@ ProgramText dp_program(std::uint32_t kind) {
                                                          {kFrontOnlyKind, "FRONT_ONLY"}};
   for (const auto& [bit, define] : names)
     if (kind & bit) text.defines.push_back(define);
+  if (edges) text.defines.push_back("EDGES");
   if (kind & kFlatArcsKind) text.defines.push_back("FLAT_ARCS " + std::to_string((kind & kFlatArcsKind) >> kFlatArcsShift));
   if (kind & (kPlanesKind | kLinesKind | kArcsKind | kEllipsesKind)) text.defines.push_back("PIECES");
   text.vertex = {"proxy.glsl", curved ? "curved.vert" : "planar.vert"};
@@ -48,7 +50,7 @@ void Renderer::Impl::upload_list(const Scene::Impl& scene) {
 Status Renderer::Impl::fill_slots() {
   const std::size_t count = list_.items.size();
   if (count == 0) return {};
-  if (count * 12 > static_cast<std::size_t>(max_texels))
+  if (count > kMostSlots || count * 12 > static_cast<std::size_t>(max_texels))
     return {StatusCode::limit, "more primitives in view than this OpenGL context's texture buffers can hold"};
   // Fresh storage every pass: a driver that rasterises later (llvmpipe) may still be reading the last pass's slots.
   slots_.assign(nullptr, count * kSlotBytes, GL_STREAM_COPY);
@@ -96,12 +98,15 @@ void Renderer::Impl::grow_indices(std::uint32_t dps) {
   indexed_dps_ = dps;
 }
 
-Status Renderer::Impl::draw_dps(const ViewRays& view) {
+Status Renderer::Impl::draw_dps(const Pass& pass) {
   std::uint32_t first = 0;
   for (const DrawGroup& group : list_.groups) {
-    const auto name = program("dp" + std::to_string(group.kind), dp_program(group.kind));
+    const bool edges = pass.edges() && (!(group.kind & kCurvedKind) || (group.kind & kFeaturesKind));
+    const std::uint32_t kind = group.kind & ~kFeaturesKind;
+    const auto name = program((edges ? "dp with edges " : "dp ") + std::to_string(kind), dp_program(kind, edges));
     if (!name) return name.status();
-    set_view(*name, view);
+    set_view(*name, pass.view);
+    gl->Uniform1f(gl->GetUniformLocation(*name, "edge_half_width"), static_cast<float>(pass.options->edge_width_px / 2));
     gl->Uniform1i(gl->GetUniformLocation(*name, "first_slot"), static_cast<GLint>(first));
     grow_indices(group.count);
     const bool prism = group.kind & kPrismKind;
@@ -146,7 +151,7 @@ Status Renderer::Impl::draw_visibility(const Pass& pass) {
   const GLfloat farthest = 0;
   gl->ClearBufferuiv(GL_COLOR, 0, nothing);
   gl->ClearBufferfv(GL_DEPTH, 0, &farthest);
-  const Status dps = draw_dps(pass.view);
+  const Status dps = draw_dps(pass);
   return dps.ok() ? draw_triangles(pass) : dps;
 }
 

@@ -5,6 +5,9 @@ flat out vec3 s, f, p, q;
 flat out vec4 bend, depth;  // λu λv a b | c, z lo, z hi, rounding
 flat out vec3 side0, side1, side2, side3;
 flat out uvec3 id;          // number, meta, pieces' texel
+#ifdef EDGES
+flat out float ink;
+#endif
 #ifdef FLAT_ARCS
 flat out vec4 arcs[2 * FLAT_ARCS];
 flat out vec2 reference;
@@ -55,13 +58,14 @@ float area(Rectangle r) {
 }
 
 // The smaller of the two rectangles around the prism's picture that are aligned with one of the footprint's first two sides.
-vec2 rectangle_corner(vec4 c01, vec4 c23, vec2 ends, vec4 rx, vec4 ry, vec4 rf) {
+vec2 rectangle_corner(vec4 c01, vec4 c23, vec2 ends, vec4 rx, vec4 ry, vec4 rf, out float size) {
   vec2 a = on_picture(c01.xy, ends.x, rx, ry, rf), b = on_picture(c01.zw, ends.x, rx, ry, rf);
   vec2 c = on_picture(c23.xy, ends.x, rx, ry, rf), d = on_picture(c23.zw, ends.x, rx, ry, rf);
   vec2 e = on_picture(c01.xy, ends.y, rx, ry, rf), f = on_picture(c01.zw, ends.y, rx, ry, rf);
   vec2 g = on_picture(c23.xy, ends.y, rx, ry, rf), h = on_picture(c23.zw, ends.y, rx, ry, rf);
   Rectangle first = around(b - a + f - e, a, b, c, d, e, f, g, h), second = around(c - b + g - f, a, b, c, d, e, f, g, h);
   if (area(second) < area(first)) first = second;
+  size = length(first.high - first.low);
   int i = gl_VertexID & 3;
   vec2 p = vec2(i == 1 || i == 2 ? first.high.x + kGrow : first.low.x - kGrow, i >= 2 ? first.high.y + kGrow : first.low.y - kGrow);
   return (p.x * first.axis + p.y * vec2(-first.axis.y, first.axis.x)) * 2.0 / picture;
@@ -94,10 +98,13 @@ void main() {
   side3 = side_function(c23.zw, c01.xy, t3.w);
 
   vec4 rx = slot_texel(slot, 8), ry = slot_texel(slot, 9), rf = slot_texel(slot, 10);
+  float size = 1e30;
 #ifdef PRISM
   gl_Position = prism_corner(c01, c23, vec2(t5.y, t5.z), rx, ry, rf, t11.y);
 #else
-  vec2 at = rectangle_corner(c01, c23, vec2(t5.y, t5.z), rx, ry, rf);
-  gl_Position = vec4(at, 0.5, 1.0);
+  gl_Position = vec4(rectangle_corner(c01, c23, vec2(t5.y, t5.z), rx, ry, rf, size), 0.5, 1.0);
+#endif
+#ifdef EDGES
+  ink = ink_for(size);
 #endif
 }

@@ -1,97 +1,151 @@
 // A region's boundary pieces and planes, tested point by point: the twin of sampling/region.cpp, in float, where a point within
 // `rounding` of the boundary counts as inside.
+//
+// With EDGES also how far, in pixels, the nearest feature edge is: a function g of the DP's frame is |g| / |∇g| pixels from zero, with
+// ∇g along the picture's axes from how the point moves on the surface from pixel to pixel, px and py. Squares are kept.
 
-// Whether the segment from r to p crosses a–b. `side` tells on which side of a–b p lies.
-bool crosses(vec2 r, vec2 p, vec2 a, vec2 b, out float side) {
-  vec2 d = p - r, ab = b - a;
-  side = cross2(ab, p - a);
+struct Region {
+  vec3 p;           // the point, in the DP's frame
+  float rounding;
+  bool inside, near;
+#ifdef EDGES
+  vec3 px, py;
+  float nearest;    // squared
+#endif
+};
+
+#ifdef EDGES
+void meet_edge(inout Region at, float g, vec3 gradient) {
+  vec2 slope = vec2(dot(gradient, at.px), dot(gradient, at.py));
+  at.nearest = min(at.nearest, g * g / max(dot(slope, slope), 1e-37));
+}
+// An edge that ends: beyond its ends the way past the end counts, too.
+void meet_segment(inout Region at, float side, vec2 a, vec2 ab) {
+  float along = dot(at.p.xy - a, ab), beyond = max(max(-along, along - dot(ab, ab)), 0.0);
+  vec2 across = vec2(-ab.y, ab.x);
+  vec2 slope = vec2(dot(across, at.px.xy), dot(across, at.py.xy)), run = vec2(dot(ab, at.px.xy), dot(ab, at.py.xy));
+  at.nearest = min(at.nearest, max(side * side / max(dot(slope, slope), 1e-37), beyond * beyond / max(dot(run, run), 1e-37)));
+}
+#endif
+
+#ifdef PLANES
+void test_planes(inout Region at, int texel, int planes, int features) {
+  for (int i = 0; i < planes; ++i) {
+    vec4 plane = heap_texel(texel + i);
+    float g = dot(plane, vec4(at.p, 1.0));
+    at.inside = at.inside && g >= -at.rounding;
+#ifdef EDGES
+    if (i < features) meet_edge(at, g, plane.xyz);
+#endif
+  }
+}
+#endif
+
+#if defined(LINES) || defined(ARCS) || defined(FLAT_ARCS)
+// Crosses the segment a–b with the way from the reference r to the point; gives on which side of a–b the point lies.
+float cross_segment(inout Region at, vec2 r, vec2 a, vec2 b) {
+  vec2 d = at.p.xy - r, ab = b - a;
+  float side = cross2(ab, at.p.xy - a);
   bool between = (cross2(d, a - r) > 0.0) != (cross2(d, b - r) > 0.0);
-  return between && ((side > 0.0) != (cross2(ab, r - a) > 0.0));
+  at.inside = at.inside != (between && (side > 0.0) != (cross2(ab, r - a) > 0.0));
+  return side;
 }
+#endif
 
-bool near_segment(vec2 p, vec2 a, vec2 b, float side, float rounding) {
-  vec2 ab = abs(b - a);
-  return abs(side) <= rounding * max(ab.x, ab.y) && dot(p - a, p - b) <= 0.0;
+#ifdef LINES
+void test_line(inout Region at, vec2 r, vec4 l, bool feature) {
+  float side = cross_segment(at, r, l.xy, l.zw);
+  vec2 ab = l.zw - l.xy, size = abs(ab);
+  at.near = at.near || (abs(side) <= at.rounding * max(size.x, size.y) && dot(at.p.xy - l.xy, at.p.xy - l.zw) <= 0.0);
+#ifdef EDGES
+  if (feature) meet_segment(at, side, l.xy, ab);
+#endif
 }
+#endif
 
-void test_arc(vec2 r, vec2 p, vec4 a01, vec4 a2w, float rounding, inout bool inside, inout bool near) {
+#if defined(ARCS) || defined(FLAT_ARCS)
+void test_arc(inout Region at, vec2 r, vec4 a01, vec4 a2w, bool feature) {
   vec2 p0 = a01.xy, p1 = a01.zw, p2 = a2w.xy;
-  float side;
-  inside = inside != crosses(r, p, p0, p2, side);
+  float side = cross_segment(at, r, p0, p2);
   // In the bulge if 0 <= b1² < 4 w² b0 b2 in barycentric coordinates; b1's sign is the chord's side, by the same expression.
-  vec2 e0 = p2 - p1, e1 = p0 - p2, e2 = p1 - p0, d = p - p1;
+  vec2 e0 = p2 - p1, e1 = p0 - p2, e2 = p1 - p0, d = at.p.xy - p1;
   float area = cross2(e2, -e1), b0 = cross2(e0, d), b2 = cross2(e2, d), b1 = -side, sharp = 4.0 * a2w.z * a2w.z;
   float g = sharp * b0 * b2 - b1 * b1;
   bool between = area > 0.0 ? min(b0, b2) >= 0.0 : max(b0, b2) <= 0.0;
   bool bulge = between && (side > 0.0) == (area < 0.0);
-  inside = inside != (bulge && g > 0.0);
-  vec2 gradient = sharp * (e0 * b2 + e2 * b0) - 2.0 * b1 * e1;  // turned by a right angle
-  near = near || (bulge && g * g <= rounding * rounding * dot(gradient, gradient));
+  at.inside = at.inside != (bulge && g > 0.0);
+  vec2 turned = sharp * (e0 * b2 + e2 * b0) - 2.0 * b1 * e1, gradient = vec2(-turned.y, turned.x);
+  at.near = at.near || (bulge && g * g <= at.rounding * at.rounding * dot(gradient, gradient));
+#ifdef EDGES
+  // On the arc's side of the chord, and not past its ends by more than a little.
+  float slack = 0.02 * abs(area);
+  bool beside = area > 0.0 ? min(min(b0, b2), b1) >= -slack : max(max(b0, b2), b1) <= slack;
+  if (feature && beside) meet_edge(at, g, vec3(gradient, 0.0));
+#endif
 }
-
-#ifdef PLANES
-bool planes_contain(int at, uint meta, vec3 p, float rounding) {
-  int planes = int((meta >> 16) & 255u);
-  for (int i = 0; i < planes; ++i)
-    if (dot(heap_texel(at + 1 + i), vec4(p, 1.0)) < -rounding) return false;
-  return true;
-}
-
 #endif
 
-#if defined(LINES) || defined(ARCS) || defined(ELLIPSES)
-bool pieces_contain(int at, uint meta, vec2 p, float rounding) {
-  uvec4 head = texelFetch(heap, at);
-  vec2 r = uintBitsToFloat(head.zw);
-  bool inside = (meta & kReferenceInside) != 0u, near = false;
-  at += 1 + int((meta >> 16) & 255u);
-  int lines = int(head.x & 4095u), arcs = int((head.x >> 12) & 4095u), ellipses = int(head.x >> 24);
-  float side;
-#ifdef LINES
-  for (int i = 0; i < lines; ++i) {
-    vec4 l = heap_texel(at + i);
-    inside = inside != crosses(r, p, l.xy, l.zw, side);
-    near = near || near_segment(p, l.xy, l.zw, side, rounding);
-  }
-  at += lines;
-#endif
-#ifdef ARCS
-  for (int i = 0; i < arcs; ++i) test_arc(r, p, heap_texel(at + 2 * i), heap_texel(at + 2 * i + 1), rounding, inside, near);
-  at += 2 * arcs;
-#endif
 #ifdef ELLIPSES
-  for (int i = 0; i < ellipses; ++i) {
-    vec4 e = heap_texel(at + 2 * i);
-    float myy = heap_texel(at + 2 * i + 1).x;
-    vec2 d = p - e.xy, q = vec2(e.z * d.x + e.w * d.y, e.w * d.x + myy * d.y);
-    float g = 1.0 - dot(q, q);
-    inside = inside != (g > 0.0);
-    near = near || abs(g) <= 2.0 * rounding * length(vec2(e.z * q.x + e.w * q.y, e.w * q.x + myy * q.y));
-  }
+void test_ellipse(inout Region at, vec4 e, float myy, bool feature) {
+  vec2 d = at.p.xy - e.xy, q = vec2(e.z * d.x + e.w * d.y, e.w * d.x + myy * d.y);
+  float g = 1.0 - dot(q, q);
+  vec2 gradient = -2.0 * vec2(e.z * q.x + e.w * q.y, e.w * q.x + myy * q.y);
+  at.inside = at.inside != (g > 0.0);
+  at.near = at.near || g * g <= at.rounding * at.rounding * dot(gradient, gradient);
+#ifdef EDGES
+  if (feature) meet_edge(at, g, vec3(gradient, 0.0));
 #endif
-  return inside || near;
 }
 #endif
 
 #ifdef FLAT_ARCS
 flat in vec4 arcs[2 * FLAT_ARCS];
 flat in vec2 reference;
-bool flat_arcs_contain(uint meta, vec2 p, float rounding) {
-  bool inside = (meta & kReferenceInside) != 0u, near = false;
-  for (int i = 0; i < FLAT_ARCS; ++i) test_arc(reference, p, arcs[2 * i], arcs[2 * i + 1], rounding, inside, near);
-  return inside || near;
+void test_pieces(inout Region at, int texel, uint meta) {
+  at.inside = (meta & kReferenceInside) != 0u;
+  for (int i = 0; i < FLAT_ARCS; ++i) test_arc(at, reference, arcs[2 * i], arcs[2 * i + 1], false);
+  at.inside = at.inside || at.near;
 }
+#elif defined(PIECES)
+void test_pieces(inout Region at, int texel, uint meta) {
+  uvec4 head = texelFetch(heap, texel);
+  int planes = int((meta >> 16) & 255u);
+  ++texel;
+  at.inside = (meta & kReferenceInside) != 0u;
+#if defined(LINES) || defined(ARCS)
+  vec2 r = uintBitsToFloat(head.zw);
+#endif
+  int next = texel + planes;
+#ifdef LINES
+  int lines = int(head.x & 4095u), feature_lines = int(head.y & 4095u);
+  for (int i = 0; i < lines; ++i) test_line(at, r, heap_texel(next + i), i < feature_lines);
+  next += lines;
+#endif
+#ifdef ARCS
+  int arcs = int((head.x >> 12) & 4095u), feature_arcs = int((head.y >> 12) & 4095u);
+  for (int i = 0; i < arcs; ++i) test_arc(at, r, heap_texel(next + 2 * i), heap_texel(next + 2 * i + 1), i < feature_arcs);
+  next += 2 * arcs;
+#endif
+#ifdef ELLIPSES
+  int ellipses = int(head.x >> 24), feature_ellipses = int(head.y >> 24);
+  for (int i = 0; i < ellipses; ++i)
+    test_ellipse(at, heap_texel(next + 2 * i), heap_texel(next + 2 * i + 1).x, i < feature_ellipses);
+#endif
+  at.inside = at.inside || at.near;
+#ifdef PLANES
+  test_planes(at, texel, planes, int(meta >> 24));
+#endif
+}
+#else
+void test_pieces(inout Region at, int texel, uint meta) { at.inside = true; }
 #endif
 
-#ifdef PIECES
-bool bounded(int at, uint meta, vec3 p, float rounding) {
-#ifdef PLANES
-  if (!planes_contain(at, meta, p, rounding)) return false;
-#endif
-#if defined(LINES) || defined(ARCS) || defined(ELLIPSES)
-  return pieces_contain(at, meta, p.xy, rounding);
-#else
-  return true;
-#endif
+#ifdef EDGES
+uniform float edge_half_width;
+flat in float ink;  // less than 1 on what is so small that its edges would blacken it
+
+// How much of the pixel an edge covers, in the bits of the id picture that are for it.
+uint edge_bits(float distance_px) {
+  return uint(ink * clamp(edge_half_width + 0.5 - distance_px, 0.0, 1.0) * kEdgeLevels + 0.5) << kEdgeShift;
 }
 #endif

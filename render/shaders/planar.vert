@@ -3,18 +3,24 @@
 uniform int first_slot;
 flat out vec3 side0, side1, side2, side3;
 flat out uint id;
+#ifdef EDGES
+flat out vec4 no_edge;  // 0 for the sides that are feature edges, much for others
+flat out float ink;
+#endif
 #ifdef PIECES
 flat out vec3 row_x, row_y, row_w;
 flat out ivec2 pieces;  // texel, slot's meta
 flat out float rounding;
 #endif
 
+// In pixels; a corner that is there twice has no side.
 vec3 side_function(vec2 a, vec2 b, mat3 rows, float rounding) {
   vec2 d = b - a;
   float l = length(d);
-  if (l == 0.0) return vec3(0.0, 0.0, 1.0);
+  if (l == 0.0) return vec3(0.0, 0.0, 1e30);
   vec2 inward = vec2(-d.y, d.x) / l;
-  return rows * vec3(inward, rounding - dot(inward, a));
+  vec3 side = rows * vec3(inward, rounding - dot(inward, a));
+  return side / max(length(side.xy * 2.0 / picture), 1e-30);
 }
 
 void main() {
@@ -59,6 +65,12 @@ void main() {
   vec2 jv = (vec2(rx.y, ry.y) * w - spread * clip * rf.y) / w2 * picture * 0.5;
   float det = max(abs(cross2(ju, jv)), 1e-30);
   float extent = length(c23.xy - c01.xy) + length(c23.zw - c01.zw);
+#ifdef EDGES
+  uint features = t0.w >> 8;
+  no_edge = vec4((features & 1u) != 0u ? 0.0 : 1e30, (features & 2u) != 0u ? 0.0 : 1e30,
+                 (features & 4u) != 0u ? 0.0 : 1e30, (features & 8u) != 0u ? 0.0 : 1e30);
+  ink = ink_for(max(length(ju * (c23.x - c01.x) + jv * (c23.y - c01.y)), length(ju * (c23.z - c01.z) + jv * (c23.w - c01.w))));
+#endif
   vec2 m = kGrow * vec2(length(ju * to.x + jv * to.y), length(ju * from.x + jv * from.y)) / det;
   at.xy += miter(to, from, min(m, vec2(extent)));
   gl_Position = to_clip(vec2(dot(rx.xyw, at), dot(ry.xyw, at)), dot(rf.xyw, at));

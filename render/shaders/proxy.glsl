@@ -14,6 +14,9 @@ vec4 to_clip(vec2 xy, float depth) {
   return vec4(xy, zero_to_one > 0.5 ? z : 2.0 * z - w, w);
 }
 
+// How strongly edges are drawn on something of this size in pixels: not at all on a few, or it would be drawn black.
+float ink_for(float size_px) { return clamp((size_px - 3.0) / 8.0, 0.0, 1.0); }
+
 vec2 corner_of(vec4 c01, vec4 c23, int i) { return i == 0 ? c01.xy : i == 1 ? c01.zw : i == 2 ? c23.xy : c23.zw; }
 
 // Unit tangent of the footprint's side that leaves corner i, skipping repeated corners; zero for a single point.

@@ -5,7 +5,7 @@ uniform vec2 axis_scale;      // 1 / (sx, sy) of view_rays.h
 uniform vec2 axis_offset;     // (ox, oy)
 uniform mat3 to_model;        // columns: right, up, towards the viewer
 uniform vec4 under;            // what the picture holds already for this sample
-uniform float edge_half_width, curvature_scale;
+uniform float curvature_scale;
 uniform uint only_color;      // 0: the file's
 
 // What is known of a pixel; view space has z towards the viewer.

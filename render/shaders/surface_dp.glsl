@@ -21,7 +21,7 @@ void principal_curvatures(vec3 n, float gradient, mat3 to_local, vec4 bend, floa
 #endif
 
 Surface surface_at(uint number, vec2 at) {
-  int slot = int(number & kIdMask) - 1;
+  int slot = int(number & kSlotMask) - 1;
   uvec4 t0 = texelFetch(slots, slot * kSlotTexels), t1 = texelFetch(slots, slot * kSlotTexels + 1),
         t2 = texelFetch(slots, slot * kSlotTexels + 2), t5 = texelFetch(slots, slot * kSlotTexels + 5);
   vec4 t3 = slot_texel(slot, 3), bend = slot_texel(slot, 4);
@@ -65,19 +65,6 @@ Surface surface_at(uint number, vec2 at) {
   principal_curvatures(n, size, mat3(right, up, back), bend, c, result.curvature, result.direction);
   result.curvature *= outside;
 #endif
-  result.edge = 0.0;
-#ifdef EDGES
-  // How the point moves on the surface when the pixel's place moves by one pixel.
-  float reach = start + spread * (t_near + t);
-  vec3 px = reach * pixel.x * p, py = reach * pixel.y * q;
-  float along = dot(g, d);
-  px -= d * (dot(g, px) / along);
-  py -= d * (dot(g, py) / along);
-  float distance_px = edge_pixels(slot, meta, int(t1.w), x, px, py);
-  // Lines give way on what is only a few pixels large, or it would be drawn black.
-  vec4 c01 = slot_texel(slot, 6), c23 = slot_texel(slot, 7);
-  float extent = length(c23.xy - c01.xy) / max(min(length(px), length(py)), 1e-30);
-  result.edge = clamp(edge_half_width + 0.5 - distance_px, 0.0, 1.0) * clamp((extent - 3.0) / 8.0, 0.0, 1.0);
-#endif
+  result.edge = float((number >> kEdgeShift) & 63u) / kEdgeLevels;
   return result;
 }

@@ -23,7 +23,7 @@ void fetch_vertex(uint index, out vec3 position, out vec3 normal) {
 }
 
 Surface surface_at(uint number, vec2 at) {
-  number &= kIdMask;
+  number &= kTriangleMask;
   uvec4 run = run_of(number);
   int triangle = int(run.z + number - run.x), instance = int(run.y) * kInstanceTexels;
   vec3 a, b, c, na, nb, nc;
