@@ -27,7 +27,7 @@ inline Vec2& operator+=(Vec2& a, Vec2 b) { return a = a + b; }
 inline double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
 /// The z component of the cross product: twice the signed area of the triangle (0, a, b).
 inline double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
-inline double length(Vec2 a) { return std::hypot(a.x, a.y); }
+inline double length(Vec2 a) { return std::sqrt(dot(a, a)); }
 
 struct Vec3 {
   double x = 0, y = 0, z = 0;
@@ -48,7 +48,7 @@ inline double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y +
 inline Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-inline double length(const Vec3& a) { return std::hypot(a.x, a.y, a.z); }
+inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
 inline double distance(const Vec3& a, const Vec3& b) { return length(a - b); }
 /// a / |a|; the zero vector for the zero vector.
 inline Vec3 normalized(const Vec3& a) {

@@ -19,6 +19,13 @@ struct BinomialTable {
   }
 };
 
+void add_product_plainly(const Net& a, const Net& b, double factor, Net& out) {
+  for (int i = 0; i <= a.p; ++i)
+    for (int j = 0; j <= a.q; ++j)
+      for (int k = 0; k <= b.p; ++k)
+        for (int l = 0; l <= b.q; ++l) out.at(i + k, j + l) += a.at(i, j) * (factor * b.at(k, l));
+}
+
 }  // namespace
 
 std::span<const double> binomials(int n) {
@@ -26,18 +33,32 @@ std::span<const double> binomials(int n) {
   return {table.c[static_cast<std::size_t>(n)].data(), static_cast<std::size_t>(n + 1)};
 }
 
+namespace {
+
+/// to[k] += s · from[k]; one operation an element, so that every clone gives the same bits.
+__attribute__((target_clones("avx2", "default"))) void add_rows(const double* a, int a_count, const double* rows, int length,
+                                                               double* to) {
+  for (int i = 0; i < a_count; ++i) {
+    const double s = a[i];
+    for (int k = 0; k < length; ++k) to[i + k] += s * rows[k];
+  }
+}
+
+/// Nets with a row of more than this many entries take the plain way.
+constexpr int kMaxPadded = 1024;
+
+}  // namespace
+
+// With b's rows padded to the product's width a product of two nets is one of two long vectors (Kronecker's substitution): the inner
+// loop runs over all of b at once.
 void add_product(const Net& a, const Net& b, double factor, Net& out) {
-  const int bq = b.q + 1, oq = out.q + 1;
-  for (int i = 0; i <= a.p; ++i)
-    for (int j = 0; j <= a.q; ++j) {
-      const double s = factor * a.at(i, j);
-      if (s == 0) continue;
-      for (int k = 0; k <= b.p; ++k) {
-        const double* from = b.c.data() + k * bq;
-        double* to = out.c.data() + (i + k) * oq + j;
-        for (int l = 0; l < bq; ++l) to[l] += s * from[l];
-      }
-    }
+  const int width = out.q + 1, length = b.p * width + b.q + 1;
+  double padded[kMaxPadded];
+  if (length > kMaxPadded) return add_product_plainly(a, b, factor, out);
+  std::fill(padded, padded + length, 0.0);
+  for (int k = 0; k <= b.p; ++k)
+    for (int l = 0; l <= b.q; ++l) padded[k * width + l] = factor * b.at(k, l);
+  for (int i = 0; i <= a.p; ++i) add_rows(a.c.data() + i * (a.q + 1), a.q + 1, padded, length, out.c.data() + i * width);
 }
 
 void multiply(const Net& a, const Net& b, Net& out) {

@@ -2,6 +2,8 @@
 #ifndef DUPIN_SAMPLING_BEZIER_CELL_H
 #define DUPIN_SAMPLING_BEZIER_CELL_H
 
+#include <array>
+
 #include "../nurbs/bezier.h"
 #include "bernstein.h"
 #include "quadric_dp.h"
@@ -22,6 +24,17 @@ struct CollapsedSides {
 };
 CollapsedSides collapsed_sides(const BezierPatch& patch);
 
+/// Up to kMaxDegree + 1 points, without an allocation.
+struct BorderPoles {
+  int count = 0;
+  std::array<Vec2, 26> points;
+  void push_back(Vec2 p) { points[static_cast<std::size_t>(count++)] = p; }
+  const Vec2* begin() const { return points.data(); }
+  const Vec2* end() const { return points.data() + count; }
+  Vec2 front() const { return points[0]; }
+  Vec2 back() const { return points[static_cast<std::size_t>(count - 1)]; }
+};
+
 /// What could be proved about a cell's DP.
 struct CellFit {
   bool valid = false;     ///< the cell is a graph over the DP's tangent plane and the quadric one sheet above it; the rest holds
@@ -33,7 +46,7 @@ struct CellFit {
   CellMargins margins;    ///< as asked for, 0 at collapsed sides
   double margin_needed[4] = {0, 0, 0, 0};  ///< for whoever makes the footprint: what its sides would take
   /// The grown cell's poles along its border, in the DP's (x,y): sides v = 0, u = 1, v = 1, u = 0; the cell's own likewise.
-  std::vector<Vec2> border[4], grown_border[4];
+  BorderPoles border[4], grown_border[4];
 };
 
 /// Fits and certifies in one go, reusing its buffers from cell to cell.

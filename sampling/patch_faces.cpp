@@ -237,10 +237,10 @@ class PatchFace {
     if (pieces.count() > kMaxPieces && cell.depth < kMaxDepth / 2) return false;
     Vec2 best{}, best_uv = uv.center();
     double most = -1;
-    const int tries = pieces.empty() ? 1 : 5;
+    const int tries = pieces.empty() ? 1 : 3;
     for (int i = 0; i < tries; ++i)
       for (int j = 0; j < tries; ++j) {
-        const double s = tries == 1 ? 0.5 : 0.09 + 0.203 * i, t = tries == 1 ? 0.5 : 0.11 + 0.197 * j;
+        const double s = tries == 1 ? 0.5 : 0.11 + 0.383 * i, t = tries == 1 ? 0.5 : 0.13 + 0.377 * j;
         const Vec2 p = chart.to_chart(point_at(cell.patch, s, t));
         const double c = clearance(pieces, p);
         if (c <= most) continue;
