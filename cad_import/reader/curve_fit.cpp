@@ -242,12 +242,16 @@ std::optional<Curve2> fit_pcurve(const Surface& surface, const Box2& domain, con
   for (std::size_t i = middle; i + 1 < coarse.size(); ++i) march(i, i + 1);
   for (std::size_t i = middle; i > 0; --i) march(i, i - 1);
 
-  double own_distance = 0;
-  for (const Node<Vec2>& n : coarse)
-    own_distance = std::max(own_distance, distance(point_at(surface, n.point.x, n.point.y), point_at(curve, n.t)));
   Refinement<Vec2> fit;
-  fit.tolerance = own_distance + tolerance;
-  fit.error = [&](double t, const Vec2& q) { return distance(point_at(surface, q.x, q.y), point_at(curve, t)); };
+  fit.tolerance = tolerance;
+  // Along the surface from where the point should be. A tenth of the curve's own height above the surface does not matter.
+  fit.error = [&](double t, const Vec2& q) {
+    const Vec3 p = point_at(curve, t), on = point_at(surface, q.x, q.y);
+    if (distance(on, p) <= tolerance) return 0.0;
+    const Vec2 foot = project(surface, domain, p, &q);
+    const Vec3 nearest = point_at(surface, foot.x, foot.y);
+    return distance(on, nearest) - 0.1 * distance(nearest, p);
+  };
   fit.node_at = [&](double t, const Node<Vec2>& before) {
     const Vec2 guess = clamp_to(surface, domain, before.point + before.tangent * (t - before.t));
     return node_near(t, &guess);

@@ -15,8 +15,8 @@ namespace dupin::reader {
 Vec2 project(const Surface& surface, const Box2& domain, const Vec3& p, const Vec2* near);
 
 /// The curve over [t0, t1] in the surface's parameters, unwrapped across periods. `domain` is where the face lies
-/// (finite; a guess that may be too large). Aims at `tolerance` above the curve's own distance from the surface; how far it
-/// got is for the caller to measure. None where it is not finite.
+/// (finite; a guess that may be too large). Aims at `tolerance` along the surface; how far it got is for the
+/// caller to measure. None where it is not finite.
 std::optional<Curve2> fit_pcurve(const Surface& surface, const Box2& domain, const Curve3& curve, double t0,
                                  double t1, double tolerance);
 

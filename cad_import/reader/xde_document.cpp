@@ -73,7 +73,7 @@ class Walk {
     item.placement = place.to_world;
     item.path = place.path;
     item.part_name = name_of(label);
-    if (says_nothing(item.part_name) && !says_nothing(place.component_name)) item.part_name = place.component_name;
+    if (says_nothing(item.part_name)) item.part_name = says_nothing(place.component_name) ? "" : place.component_name;
     item.part_color = color_of(label);
     item.instance_color = place.override_color;
     if (const auto color = color_in_context(place.components)) item.instance_color = color;
