@@ -75,7 +75,8 @@ struct QuadricDp {
   Vec2 reference;
   bool reference_inside = true;
   /// Certified: no point drawn is farther than `bound` (model units) from the face's surface, and no drawn normal turned by
-  /// more than `normal_bound` (radians) from the surface's there. docs/mathematics.md, "Certificates".
+  /// more than `normal_bound` (radians) from the surface's there. docs/mathematics.md, "Certificates". Where the file's own edge
+  /// lies off the surface the face reaches outwards as far, at most twice the edge's tolerance: that is not counted.
   double bound = 0, normal_bound = 0;
   bool sampled_bound = false;  ///< on an offset surface the bounds hold a sampled part: estimated, not certified
   bool speck = false;  ///< smaller than the tolerance, at a singular point: flat, and `normal_bound` says nothing

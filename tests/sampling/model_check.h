@@ -8,7 +8,7 @@
 
 #include "../../sampling/quadric_dp.h"
 
-namespace dupin::testing {
+namespace dupin::test {
 
 struct FaceReport {
   std::uint32_t part = 0, face = 0;
@@ -33,6 +33,6 @@ struct CheckOptions {
 
 std::vector<FaceReport> check_scene(const Model& model, const DpScene& scene, const CheckOptions& options);
 
-}  // namespace dupin::testing
+}  // namespace dupin::test
 
 #endif
