@@ -9,7 +9,9 @@ void clear(int order, Vec3* out) {
 }
 
 /// The i-th derivative of cos u·X + sin u·Y.
-Vec3 radial(const Frame3& f, const TrigJet& u, int i) { return f.x * u.c[i] + f.y * u.s[i]; }
+Vec3 radial(const Frame3& f, const TrigJet& u, int i) {
+  return f.x * u.c[i] + f.y * u.s[i];
+}
 
 }  // namespace
 

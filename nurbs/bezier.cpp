@@ -1,8 +1,8 @@
 // Bézier patches and curves of every rational kind.
 //
-// Every kind but the plane and the B-spline is a sweep: a profile in homogeneous Bézier pieces, turned along arcs or moved along
-// a line. An arc from u0 to u1 of half angle h about its middle m is the rational quadratic with homogeneous
-// coefficients (cos u0, sin u0, 1), (cos m, sin m, cos h), (cos u1, sin u1, 1).
+// Every kind but the plane and the B-spline is a sweep: a profile in homogeneous Bézier pieces, turned along
+// arcs or moved along a line. An arc from u0 to u1 of half angle h about its middle m is the rational
+// quadratic with homogeneous coefficients (cos u0, sin u0, 1), (cos m, sin m, cos h), (cos u1, sin u1, 1).
 #include "bezier.h"
 
 #include <array>
@@ -33,7 +33,10 @@ std::vector<Arc> arcs(double u0, double u1) {
   for (int i = 0; i < count; ++i) {
     const double a = u0 + (u1 - u0) * i / count, b = i + 1 < count ? u0 + (u1 - u0) * (i + 1) / count : u1;
     const double m = 0.5 * (a + b);
-    out.push_back({a, b, {std::cos(a), std::cos(m), std::cos(b)}, {std::sin(a), std::sin(m), std::sin(b)},
+    out.push_back({a,
+                   b,
+                   {std::cos(a), std::cos(m), std::cos(b)},
+                   {std::sin(a), std::sin(m), std::sin(b)},
                    {1, std::cos(0.5 * (b - a)), 1}});
   }
   return out;
@@ -112,7 +115,7 @@ bool has_weights(const BezierCurve3& curve) {
   return false;
 }
 
-/// A profile piece (ρ, z, w) in the half plane of a frame: what cylinder, cone, sphere and torus turn about Z.
+/// A profile piece (ρ, z, w) in the half plane of a frame: what cylinder, cone, sphere and torus turn about.
 struct Meridian {
   double v0, v1;
   int degree;
@@ -133,7 +136,8 @@ std::vector<BezierPatch> turn(const Frame3& f, const std::vector<Meridian>& prof
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j <= m.degree; ++j) {
           const double w = arc.w[i] * m.w[j];
-          const Vec3 p = f.origin * w + ((f.x * arc.c[i] + f.y * arc.s[i]) * m.rho[j] + f.z * (m.z[j] * arc.w[i]));
+          const Vec3 p =
+              f.origin * w + ((f.x * arc.c[i] + f.y * arc.s[i]) * m.rho[j] + f.z * (m.z[j] * arc.w[i]));
           patch.pole(i, j) = {p.x, p.y, p.z, w};
         }
       out.push_back(std::move(patch));
@@ -142,9 +146,12 @@ std::vector<BezierPatch> turn(const Frame3& f, const std::vector<Meridian>& prof
 }
 
 /// The straight meridian with radius r(v) = radius + v·slope and height v·rise.
-std::vector<BezierPatch> turn_line(const Frame3& f, double radius, double slope, double rise, const Box2& region) {
+std::vector<BezierPatch> turn_line(const Frame3& f, double radius, double slope, double rise,
+                                   const Box2& region) {
   const double v0 = region.lo.y, v1 = region.hi.y;
-  return turn(f, {{v0, v1, 1, false, {radius + v0 * slope, radius + v1 * slope}, {v0 * rise, v1 * rise}, {1, 1}}}, region);
+  return turn(
+      f, {{v0, v1, 1, false, {radius + v0 * slope, radius + v1 * slope}, {v0 * rise, v1 * rise}, {1, 1}}},
+      region);
 }
 
 std::vector<BezierPatch> turn_circle(const Frame3& f, double major, double minor, const Box2& region) {
@@ -178,7 +185,9 @@ std::vector<BezierPatch> patches(const Sphere& s, const Box2& region) {
 std::vector<BezierPatch> patches(const Torus& t, const Box2& region) {
   return turn_circle(t.frame, t.major, t.minor, region);
 }
-std::vector<BezierPatch> patches(const OffsetSurface&, const Box2&) { return {}; }
+std::vector<BezierPatch> patches(const OffsetSurface&, const Box2&) {
+  return {};
+}
 
 std::vector<BezierPatch> patches(const Revolution& s, const Box2& region) {
   std::vector<BezierPatch> out;
@@ -300,8 +309,8 @@ double to_patch(bool is_angle, double lo, double hi, double u) {
   return is_angle ? arc_parameter(lo, hi, u) : (u - lo) / (hi - lo);
 }
 
-/// Scales pole k by factorᵏ and everything so that the two ends of an arc weigh as before the cut: a projective change
-/// of parameter that puts the piece of an arc back into the standard form.
+/// Scales pole k by factorᵏ and everything so that the two ends of an arc weigh as before the cut: a
+/// projective change of parameter that puts the piece of an arc back into the standard form.
 void restore_arc(Vec4* poles, std::size_t stride, double end_ratio, double scale) {
   const double factor = std::sqrt(end_ratio);
   double s = scale;

@@ -21,12 +21,18 @@ Box3 box_of(const std::vector<Vec4>& poles) {
   return box;
 }
 
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
+double angle_between(const Vec3& a, const Vec3& b) {
+  return std::atan2(length(cross(a, b)), dot(a, b));
+}
 
 }  // namespace
 
-Box3 bounding_box(const BezierPatch& patch) { return box_of(patch.poles); }
-Box3 bounding_box(const BezierCurve3& curve) { return box_of(curve.poles); }
+Box3 bounding_box(const BezierPatch& patch) {
+  return box_of(patch.poles);
+}
+Box3 bounding_box(const BezierCurve3& curve) {
+  return box_of(curve.poles);
+}
 
 NormalCone normal_cone(const BezierPatch& patch) {
   const NormalCone everything{{}, std::numbers::pi};

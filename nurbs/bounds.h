@@ -17,12 +17,13 @@ struct NormalCone {
   bool bounded() const { return angle < 1.5707963267948966; }
 };
 
-/// Contains Su × Sv everywhere on the patch where it does not vanish: the cone of the Bernstein coefficients of w³ Su × Sv.
-/// Coefficients below 1e-13 of the largest are taken for zero (collapsed edges).
+/// Contains Su × Sv everywhere on the patch where it does not vanish: the cone of the Bernstein coefficients
+/// of w³ Su × Sv. Coefficients below 1e-13 of the largest are taken for zero (collapsed edges).
 NormalCone normal_cone(const BezierPatch& patch);
 
-/// Whether some direction of the cone may point towards the viewer: false says that the patch, if its outward normal is the
-/// cone's, is turned away from every eye in the direction `to_eye` (unit) give or take `spread` radians.
+/// Whether some direction of the cone may point towards the viewer: false says that the patch, if its outward
+/// normal is the cone's, is turned away from every eye in the direction `to_eye` (unit) give or take `spread`
+/// radians.
 bool may_face(const NormalCone& cone, const Vec3& to_eye, double spread);
 
 }  // namespace dupin

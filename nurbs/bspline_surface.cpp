@@ -1,7 +1,7 @@
 // B-spline and NURBS surfaces: tensor-product sums over the active poles, then the quotient rule.
 //
-// The sums are formed relative to one of the active poles: derivatives do not change, since the derivatives of the basis add up
-// to zero, and nothing is lost to cancellation for a surface far from the origin.
+// The sums are formed relative to one of the active poles: derivatives do not change, since the derivatives
+// of the basis add up to zero, and nothing is lost to cancellation for a surface far from the origin.
 #include "jets.h"
 #include "knots.h"
 
@@ -52,11 +52,16 @@ void sum_poles(const BsplineSurface& s, const Cell& cell, int any_order, Vec3* a
 template <bool kRational>
 void sum_poles(const BsplineSurface& s, const Cell& cell, int order, Vec3* a, double* w) {
   switch (order) {
-    case 0: return sum_poles<0, kRational>(s, cell, order, a, w);
-    case 1: return sum_poles<1, kRational>(s, cell, order, a, w);
-    case 2: return sum_poles<2, kRational>(s, cell, order, a, w);
-    case 3: return sum_poles<3, kRational>(s, cell, order, a, w);
-    default: return sum_poles<-1, kRational>(s, cell, order, a, w);
+    case 0:
+      return sum_poles<0, kRational>(s, cell, order, a, w);
+    case 1:
+      return sum_poles<1, kRational>(s, cell, order, a, w);
+    case 2:
+      return sum_poles<2, kRational>(s, cell, order, a, w);
+    case 3:
+      return sum_poles<3, kRational>(s, cell, order, a, w);
+    default:
+      return sum_poles<-1, kRational>(s, cell, order, a, w);
   }
 }
 

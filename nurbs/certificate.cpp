@@ -1,10 +1,12 @@
 // Certified deviations through Bernstein coefficients.
 //
-// With the implicit polynomial f of a shape, F = f∘S · wᵈ is a polynomial of d times the patch's degree, and its coefficients over those
-// of wᵈ bound |f| along the patch. What turns |f| into a distance e (r, R, α of the shape; ρ, z cylindrical coordinates):
+// With the implicit polynomial f of a shape, F = f∘S · wᵈ is a polynomial of d times the patch's degree, and
+// its coefficients over those of wᵈ bound |f| along the patch. What turns |f| into a distance e (r, R, α of
+// the shape; ρ, z cylindrical coordinates):
 //   sphere, cylinder   f = |p|² − r² (ρ for the cylinder)      e = |f| / (|p| + r)
 //   cone               f = ρ² cos² α − z² sin² α              e = |f| / (ρ cos α + z sin α), z from the apex
-//   torus              f = (A − 2Rρ)(A + 2Rρ), A = |p|² + R² − r²   e = |f| / ((A + 2Rρ)(e' + 2r)), e' = the signed e
+//   torus              f = (A − 2Rρ)(A + 2Rρ), A = |p|² + R² − r²   e = |f| / ((A + 2Rρ)(e' + 2r)), e' = the
+//   signed e
 // Each denominator is bounded below on the cell, first roughly, then with the e just found.
 // The derivatives of F/wᵈ bound n·Su and n·Sv in the same way: ∇f·Su = ∂(f∘S)/∂u.
 #include "certificate.h"
@@ -38,7 +40,8 @@ Quotient bound_quotient(const Tensor& f, const Tensor& d, double rounding) {
   const auto derivative = [&](const Tensor& fu, const Tensor& du, int degree) {
     return (largest_coefficient(fu) + size * largest_coefficient(du)) / least + 2 * degree * rounding;
   };
-  return {size, derivative(derivative_u(f), derivative_u(d), f.p), derivative(derivative_v(f), derivative_v(d), f.q)};
+  return {size, derivative(derivative_u(f), derivative_u(d), f.p),
+          derivative(derivative_v(f), derivative_v(d), f.q)};
 }
 
 ParameterRange range_of(const Tensor& f, const Tensor& d) {
@@ -70,7 +73,8 @@ CellBounds round_bounds(const Tensor& square, const Tensor& w, double radius) {
 CellBounds cone_bounds(const Cone& cone, const HomogeneousTensors& t) {
   const double sine = std::sin(cone.half_angle), cosine = std::cos(cone.half_angle);
   const Tensor d = squared(t.w), across = squared(t.x[0]) + squared(t.x[1]), along = squared(t.x[2]);
-  const double rounding = kRounding * (range_of(across, d).hi * cosine * cosine + range_of(along, d).hi * sine * sine);
+  const double rounding =
+      kRounding * (range_of(across, d).hi * cosine * cosine + range_of(along, d).hi * sine * sine);
   const Quotient f = bound_quotient(across * (cosine * cosine) - along * (sine * sine), d, rounding);
   const double least = range_of(t.x[2], t.w).lo * sine;
   // At the apex: e² <= e (ρ cos α + z sin α) for z >= 0.
@@ -126,7 +130,8 @@ Metric metric_of(const BezierPatch& cell) {
   const std::array<Tensor, 3> n = normal_tensors(t, cell.rational);
   const int p = n[0].p, q = n[0].q;
   const std::span<const double> bu = binomials(p), bv = binomials(q);
-  std::vector<double> rows(static_cast<std::size_t>(p) + 1, 0.0), columns(static_cast<std::size_t>(q) + 1, 0.0);
+  std::vector<double> rows(static_cast<std::size_t>(p) + 1, 0.0),
+      columns(static_cast<std::size_t>(q) + 1, 0.0);
   Vec3 sum;
   for (int i = 0; i <= p; ++i)
     for (int j = 0; j <= q; ++j) {
@@ -136,15 +141,18 @@ Metric metric_of(const BezierPatch& cell) {
       sum += c;
     }
   const Vec3 m = normalized(sum);
-  const ParameterRange along = coefficient_range(n[0] * m.x + n[1] * m.y + n[2] * m.z), w = coefficient_range(t.w);
+  const ParameterRange along = coefficient_range(n[0] * m.x + n[1] * m.y + n[2] * m.z),
+                       w = coefficient_range(t.w);
   const auto evenness = [](const std::vector<double>& list) {
     const auto [least, most] = std::minmax_element(list.begin(), list.end());
     return *most > 0 ? *least / *most : 1;
   };
   const double most = *std::max_element(rows.begin(), rows.end());
-  const double heaviest = cell.rational ? w.hi * w.hi * w.hi : 1, lightest = cell.rational ? w.lo * w.lo * w.lo : 1;
-  return {longest(t, true, cell.rational), longest(t, false, cell.rational), std::max(0.0, along.lo) / heaviest,
-          lightest > 0 ? most / lightest : kInfinity, evenness(rows) < evenness(columns)};
+  const double heaviest = cell.rational ? w.hi * w.hi * w.hi : 1,
+               lightest = cell.rational ? w.lo * w.lo * w.lo : 1;
+  return {longest(t, true, cell.rational), longest(t, false, cell.rational),
+          std::max(0.0, along.lo) / heaviest, lightest > 0 ? most / lightest : kInfinity,
+          evenness(rows) < evenness(columns)};
 }
 
 }  // namespace
@@ -171,12 +179,13 @@ CellBounds shape_bounds(const Surface& shape, const BezierPatch& cell) {
     frame.origin -= frame.z * (cone->radius / std::tan(cone->half_angle));
     return cone_bounds(*cone, tensors(frame));
   }
-  if (const auto* torus = std::get_if<Torus>(&shape.geometry)) return torus_bounds(*torus, tensors(torus->frame));
+  if (const auto* torus = std::get_if<Torus>(&shape.geometry))
+    return torus_bounds(*torus, tensors(torus->frame));
   return {kInfinity, kInfinity, kInfinity, kInfinity};
 }
 
-// With ρ and z of cell and profile at the same v, E = Δρ e_r + Δz e_z takes the cell's point to one of the swept surface, whose
-// normal m there is perpendicular to S − E's derivatives: m·Su = m·Eu.
+// With ρ and z of cell and profile at the same v, E = Δρ e_r + Δz e_z takes the cell's point to one of the
+// swept surface, whose normal m there is perpendicular to S − E's derivatives: m·Su = m·Eu.
 CellBounds revolution_bounds(const Frame3& axis, const BezierPatch& profile, const BezierPatch& cell) {
   const HomogeneousTensors t = homogeneous_tensors(cell, axis), t0 = homogeneous_tensors(profile, axis);
   const Tensor across = squared(t.x[0]) + squared(t.x[1]), across0 = squared(t0.x[0]) + squared(t0.x[1]);
@@ -184,12 +193,14 @@ CellBounds revolution_bounds(const Frame3& axis, const BezierPatch& profile, con
   const ParameterRange rho2 = range_of(across, w2), rho02 = range_of(across0, w02), z = range_of(t.x[2], t.w);
   const double height = std::max(std::abs(z.lo), std::abs(z.hi));
   const Quotient dz = bound_quotient(t.x[2] * t0.w - t0.x[2] * t.w, t.w * t0.w, kRounding * height);
-  const Quotient square = bound_quotient(across * w02 - across0 * w2, w2 * w02, kRounding * (rho2.hi + rho02.hi));
+  const Quotient square =
+      bound_quotient(across * w02 - across0 * w2, w2 * w02, kRounding * (rho2.hi + rho02.hi));
   const double sum = 2 * std::sqrt(std::max(0.0, std::min(rho2.lo, rho02.lo)));  // below ρ + ρ₀
   const double drho = std::min(std::sqrt(square.size), square.size / sum);
   const double su = longest(t, true, cell.rational), sv = longest(t, false, cell.rational);
   const double pv = longest(t0, false, profile.rational);
-  const double u = dz.u + (square.u + drho * 3 * su) / sum, v = dz.v + (square.v + drho * (3 * sv + pv)) / sum;
+  const double u = dz.u + (square.u + drho * 3 * su) / sum,
+               v = dz.v + (square.v + drho * (3 * sv + pv)) / sum;
   return {dz.size + drho, sum > 0 ? u : kInfinity, sum > 0 ? v : kInfinity, 0};
 }
 
@@ -206,7 +217,8 @@ std::optional<Deviation> certify(const BezierPatch& patch, const Deviation& limi
     const Metric metric = metric_of(cell);
     const double unit = cell.domain.size().x * cell.domain.size().y;
     largest_area = std::max(largest_area, metric.least_area / unit);
-    // The part of the unit normal m that lies in the tangent plane is (m·Su (Sv × n) + m·Sv (n × Su)) / |Su × Sv|.
+    // The part of the unit normal m that lies in the tangent plane is (m·Su (Sv × n) + m·Sv (n × Su)) / |Su ×
+    // Sv|.
     const double sine = (b.normal_u * metric.longest_v + b.normal_v * metric.longest_u) / metric.least_area;
     const double angle = sine < 1 ? std::asin(sine) + b.normal_slack : kInfinity;
     const bool collapsed = metric.largest_area / unit < kCollapsed * largest_area;

@@ -1,4 +1,5 @@
-// Inside the folder: how far a Bézier patch is from a plane, sphere, cylinder, cone, torus or surface of revolution, certified.
+// Inside the folder: how far a Bézier patch is from a plane, sphere, cylinder, cone, torus or surface of
+// revolution, certified.
 #ifndef DUPIN_NURBS_CERTIFICATE_H
 #define DUPIN_NURBS_CERTIFICATE_H
 
@@ -24,16 +25,17 @@ struct CellBounds {
 };
 
 using BoundCell = std::function<CellBounds(const BezierPatch&)>;
-/// Splits the patch until `bound` is within `limit` on every cell, into at most kCertificateCells; empty if that is not reached.
-/// Cells with |Su × Sv| below 1e-3 of the patch's largest need only meet the distance.
+/// Splits the patch until `bound` is within `limit` on every cell, into at most kCertificateCells; empty if
+/// that is not reached. Cells with |Su × Sv| below 1e-3 of the patch's largest need only meet the distance.
 std::optional<Deviation> certify(const BezierPatch& patch, const Deviation& limit, const BoundCell& bound);
 inline constexpr int kCertificateCells = 128;
 
 /// The bounds for an analytic shape: of the implicit polynomial along the cell, divided by its gradient.
 CellBounds shape_bounds(const Surface& shape, const BezierPatch& cell);
 
-/// The bounds for the surface that `profile` sweeps about the frame's z axis, where the cell's points are compared with
-/// the profile's of the same v. The profile is a patch of degree 0 in u over the same v domain as the cell.
+/// The bounds for the surface that `profile` sweeps about the frame's z axis, where the cell's points are
+/// compared with the profile's of the same v. The profile is a patch of degree 0 in u over the same v domain
+/// as the cell.
 CellBounds revolution_bounds(const Frame3& axis, const BezierPatch& profile, const BezierPatch& cell);
 
 }  // namespace dupin

@@ -1,5 +1,5 @@
-// Principal curvatures by the symmetric shape operator in an orthonormal tangent frame: a 2x2 symmetric eigenproblem, which
-// keeps its digits where H ± sqrt(H² − K) loses half of them.
+// Principal curvatures by the symmetric shape operator in an orthonormal tangent frame: a 2x2 symmetric
+// eigenproblem, which keeps its digits where H ± sqrt(H² − K) loses half of them.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -113,7 +113,8 @@ double smooth_reach(const Surface& surface, Vec2 uv, Vec2 way) {
   double reach = 1;
   if (const auto* s = std::get_if<BsplineSurface>(&surface.geometry)) {
     if (way.x != 0) reach = reach_in_knots(s->knots_u, s->degree_u, s->periodic_u, uv.x, way.x);
-    if (way.y != 0) reach = std::min(reach, reach_in_knots(s->knots_v, s->degree_v, s->periodic_v, uv.y, way.y));
+    if (way.y != 0)
+      reach = std::min(reach, reach_in_knots(s->knots_v, s->degree_v, s->periodic_v, uv.y, way.y));
   } else if (const auto* revolution = std::get_if<Revolution>(&surface.geometry)) {
     if (way.y != 0) reach = reach_in_curve(revolution->profile, uv.y, way.y);
   } else if (const auto* extrusion = std::get_if<Extrusion>(&surface.geometry)) {
@@ -124,8 +125,9 @@ double smooth_reach(const Surface& surface, Vec2 uv, Vec2 way) {
   return reach;
 }
 
-// The limit is that of polynomials in h through h = reach/8 … reach/512 (Neville), of the normal and of the curvature tensor
-// Σ kᵢ dᵢ dᵢᵀ in space, which unlike the directions is smooth in h. 1/h, which has no limit, shows by the last step's size.
+// The limit is that of polynomials in h through h = reach/8 … reach/512 (Neville), of the normal and of the
+// curvature tensor Σ kᵢ dᵢ dᵢᵀ in space, which unlike the directions is smooth in h. 1/h, which has no limit,
+// shows by the last step's size.
 constexpr int kNodes = 7;
 constexpr double kFirstNode = 1.0 / 8;
 constexpr double kConverged = 5e-3;
@@ -134,7 +136,8 @@ using LimitValues = std::array<double, 9>;  // the tensor's six components, then
 
 LimitValues limit_values(const Curvature& k) {
   const auto tensor = [&k](int i, int j) { return k.k1 * k.d1[i] * k.d1[j] + k.k2 * k.d2[i] * k.d2[j]; };
-  return {tensor(0, 0), tensor(1, 1), tensor(2, 2), tensor(0, 1), tensor(0, 2), tensor(1, 2), k.n.x, k.n.y, k.n.z};
+  return {tensor(0, 0), tensor(1, 1), tensor(2, 2), tensor(0, 1), tensor(0, 2),
+          tensor(1, 2), k.n.x,        k.n.y,        k.n.z};
 }
 
 Curvature limit_curvature(const Surface& surface, Vec2 uv, Vec2 way, double extent) {

@@ -81,10 +81,18 @@ void evaluate_kind(const BsplineOf<V>& s, double t, int order, V* out) {
 }
 
 /// The vector that the offset goes along, before normalisation, as a vector in space.
-Vec3 offset_side(const Vec2& tangent, const Vec3&) { return {tangent.y, -tangent.x, 0}; }
-Vec3 offset_side(const Vec3& tangent, const Vec3& reference) { return cross(tangent, reference); }
-void add_side(Vec2& p, const Vec3& side) { p += Vec2{side.x, side.y}; }
-void add_side(Vec3& p, const Vec3& side) { p += side; }
+Vec3 offset_side(const Vec2& tangent, const Vec3&) {
+  return {tangent.y, -tangent.x, 0};
+}
+Vec3 offset_side(const Vec3& tangent, const Vec3& reference) {
+  return cross(tangent, reference);
+}
+void add_side(Vec2& p, const Vec3& side) {
+  p += Vec2{side.x, side.y};
+}
+void add_side(Vec3& p, const Vec3& side) {
+  p += side;
+}
 
 template <class V>
 void evaluate_kind(const OffsetCurveOf<V>& offset, double t, int order, V* out) {
@@ -99,7 +107,8 @@ void evaluate_kind(const OffsetCurveOf<V>& offset, double t, int order, V* out) 
   for (int k = 0; k <= order; ++k) {
     out[k] = base[std::min(k, known)];
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    add_side(out[k], k < known ? unit[jet_index(k, 0)] * (offset.distance * kFactorial[k]) : Vec3{nan, nan, nan});
+    add_side(out[k],
+             k < known ? unit[jet_index(k, 0)] * (offset.distance * kFactorial[k]) : Vec3{nan, nan, nan});
   }
 }
 
@@ -122,7 +131,8 @@ void spline_breaks(const BsplineOf<V>& s, double t0, double t1, int continuity, 
       std::size_t next = i;
       while (next < s.knots.size() && s.knots[next] == s.knots[i]) ++next;
       const double t = s.knots[i] + turn * length;
-      const bool inside = s.periodic ? s.knots[i] >= lo && s.knots[i] < hi : s.knots[i] > lo && s.knots[i] < hi;
+      const bool inside =
+          s.periodic ? s.knots[i] >= lo && s.knots[i] < hi : s.knots[i] > lo && s.knots[i] < hi;
       if (inside && t > t0 && t < t1 && p - static_cast<int>(next - i) < continuity) out.push_back(t);
       i = next;
     }
@@ -142,13 +152,16 @@ template <class V>
 ParameterRange domain_of(const CurveOf<V>& curve) {
   switch (curve.geometry.index()) {
     case 1:
-    case 2: return {0, 2 * std::numbers::pi};
+    case 2:
+      return {0, 2 * std::numbers::pi};
     case 5: {
       const auto& s = std::get<BsplineOf<V>>(curve.geometry);
       return {s.knots[s.degree], s.knots[s.poles.size()]};
     }
-    case 6: return domain_of(*std::get<OffsetCurveOf<V>>(curve.geometry).base);
-    default: return {-kInfinity, kInfinity};
+    case 6:
+      return domain_of(*std::get<OffsetCurveOf<V>>(curve.geometry).base);
+    default:
+      return {-kInfinity, kInfinity};
   }
 }
 
@@ -170,8 +183,12 @@ void evaluate_into(const Curve3& curve, double t, int order, Vec3* out) {
   std::visit([&](const auto& geometry) { evaluate_kind(geometry, t, order, out); }, curve.geometry);
 }
 
-CurveJet<Vec2> evaluate(const Curve2& curve, double t, int order) { return evaluate_public(curve, t, order); }
-CurveJet<Vec3> evaluate(const Curve3& curve, double t, int order) { return evaluate_public(curve, t, order); }
+CurveJet<Vec2> evaluate(const Curve2& curve, double t, int order) {
+  return evaluate_public(curve, t, order);
+}
+CurveJet<Vec3> evaluate(const Curve3& curve, double t, int order) {
+  return evaluate_public(curve, t, order);
+}
 
 std::vector<double> breaks(const Curve2& curve, double t0, double t1, int continuity) {
   return breaks_of(curve, t0, t1, continuity);
@@ -180,9 +197,17 @@ std::vector<double> breaks(const Curve3& curve, double t0, double t1, int contin
   return breaks_of(curve, t0, t1, continuity);
 }
 
-ParameterRange domain(const Curve2& curve) { return domain_of(curve); }
-ParameterRange domain(const Curve3& curve) { return domain_of(curve); }
-double period(const Curve2& curve) { return period_of(curve); }
-double period(const Curve3& curve) { return period_of(curve); }
+ParameterRange domain(const Curve2& curve) {
+  return domain_of(curve);
+}
+ParameterRange domain(const Curve3& curve) {
+  return domain_of(curve);
+}
+double period(const Curve2& curve) {
+  return period_of(curve);
+}
+double period(const Curve3& curve) {
+  return period_of(curve);
+}
 
 }  // namespace dupin

@@ -1,7 +1,7 @@
 // Curves in the plane and in space, exact: lines, conics, B-splines, offsets.
 //
-// One template for both dimensions. Parametrisations are those of ISO 10303-42 (and of OCCT), so that parameter
-// ranges and pcurves of files mean what they say:
+// One template for both dimensions. Parametrisations are those of ISO 10303-42 (and of OCCT), so that
+// parameter ranges and pcurves of files mean what they say:
 //   line       O + t·X                                  hyperbola  O + a·cosh t·X + b·sinh t·Y
 //   circle     O + r·(cos t·X + sin t·Y)                parabola   O + (t²/4f)·X + t·Y
 //   ellipse    O + a·cos t·X + b·sin t·Y                B-spline   Σ Nᵢ(t) wᵢ Pᵢ / Σ Nᵢ(t) wᵢ
@@ -18,8 +18,8 @@
 
 namespace dupin {
 
-/// Position and derivatives of a curve: d[0] is the point, d[k] the k-th derivative; d[k] above the order that
-/// was asked for are zero.
+/// Position and derivatives of a curve: d[0] is the point, d[k] the k-th derivative; d[k] above the order
+/// that was asked for are zero.
 template <class V>
 using CurveJet = std::array<V, 4>;
 
@@ -50,7 +50,7 @@ struct HyperbolaOf {
 template <class V>
 struct BsplineOf {
   int degree = 0;
-  std::vector<double> knots;    ///< full, see knots.h
+  std::vector<double> knots;  ///< full, see knots.h
   std::vector<V> poles;
   std::vector<double> weights;  ///< empty: all 1
   bool periodic = false;        ///< closes smoothly with the period knots[n] - knots[degree]
@@ -78,12 +78,16 @@ using Curve3 = CurveOf<Vec3>;
 using Bspline2 = BsplineOf<Vec2>;
 using Bspline3 = BsplineOf<Vec3>;
 
-/// Position and derivatives to `order` (0 … 3). A B-spline is evaluated at t clamped to its domain, or wrapped
-/// into it if periodic. Where an offset's base has no tangent the result is not finite.
+/// Position and derivatives to `order` (0 … 3). A B-spline is evaluated at t clamped to its domain, or
+/// wrapped into it if periodic. Where an offset's base has no tangent the result is not finite.
 CurveJet<Vec2> evaluate(const Curve2& curve, double t, int order);
 CurveJet<Vec3> evaluate(const Curve3& curve, double t, int order);
-inline Vec2 point_at(const Curve2& curve, double t) { return evaluate(curve, t, 0)[0]; }
-inline Vec3 point_at(const Curve3& curve, double t) { return evaluate(curve, t, 0)[0]; }
+inline Vec2 point_at(const Curve2& curve, double t) {
+  return evaluate(curve, t, 0)[0];
+}
+inline Vec3 point_at(const Curve3& curve, double t) {
+  return evaluate(curve, t, 0)[0];
+}
 
 struct ParameterRange {
   double lo = 0, hi = 0;

@@ -32,8 +32,8 @@ std::vector<SplinePiece> spline_pieces(std::span<const double> knots, int degree
   return pieces;
 }
 
-// The k-th Bézier pole over [a, b] is the spline's polar form with k arguments b and the others a (Ramshaw); the
-// recurrence of the basis functions, with another argument at each level, gives its weights.
+// The k-th Bézier pole over [a, b] is the spline's polar form with k arguments b and the others a (Ramshaw);
+// the recurrence of the basis functions, with another argument at each level, gives its weights.
 void extraction_matrix(std::span<const double> knots, int degree, const SplinePiece& piece, double* matrix) {
   const double a = piece.t0 - piece.shift, b = piece.t1 - piece.shift;
   for (int k = 0; k <= degree; ++k) {

@@ -8,7 +8,9 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-double near(double angle, double guess) { return angle + kTurn * std::round((guess - angle) / kTurn); }
+double near(double angle, double guess) {
+  return angle + kTurn * std::round((guess - angle) / kTurn);
+}
 
 /// atan2 next to the guess; the guess itself where the vector is nothing but rounding of `size`.
 double angle_of(double y, double x, double size, double guess) {
@@ -69,7 +71,10 @@ struct Normal2 {
 class Newton {
  public:
   Newton(const Surface& surface, const Vec3& p)
-      : surface_(surface), p_(p), box_(domain(surface)), periodic_u_(period_u(surface) > 0),
+      : surface_(surface),
+        p_(p),
+        box_(domain(surface)),
+        periodic_u_(period_u(surface) > 0),
         periodic_v_(period_v(surface) > 0) {}
 
   std::optional<Vec2> run(Vec2 q) const {
@@ -98,7 +103,8 @@ class Newton {
   }
 
  private:
-  /// The Newton step for |S − p|²/2, or Gauss–Newton's where that is no descent; along a border where it leads out.
+  /// The Newton step for |S − p|²/2, or Gauss–Newton's where that is no descent; along a border where it
+  /// leads out.
   Vec2 proposal(const SurfaceJet& jet, Vec2 q) const {
     const Vec3 r = jet.p - p_;
     Vec2 g{dot(r, jet.pu), dot(r, jet.pv)};
@@ -122,7 +128,8 @@ class Newton {
     const double moved = length(jet.pu) * std::abs(step.x) + length(jet.pv) * std::abs(step.y);
     return moved <= 4e-16 * size + 1e-15 * distance(jet.p, p_);
   }
-  /// No free direction leads nearer: the distance is all rounding, or perpendicular to the surface to half its digits.
+  /// No free direction leads nearer: the distance is all rounding, or perpendicular to the surface to half
+  /// its digits.
   bool stationary(const SurfaceJet& jet, Vec2 q, double size) const {
     const double away = distance(jet.p, p_);
     return away <= 1e-14 * size || slope(jet, q) <= 1e-7 * away;
@@ -131,8 +138,10 @@ class Newton {
   double slope(const SurfaceJet& jet, Vec2 q) const {
     const Vec3 r = jet.p - p_;
     const Vec2 g{dot(r, jet.pu), dot(r, jet.pv)};
-    const double gu = pinned(q.x, -g.x, box_.lo.x, box_.hi.x, periodic_u_) ? 0 : std::abs(g.x) / length(jet.pu);
-    const double gv = pinned(q.y, -g.y, box_.lo.y, box_.hi.y, periodic_v_) ? 0 : std::abs(g.y) / length(jet.pv);
+    const double gu =
+        pinned(q.x, -g.x, box_.lo.x, box_.hi.x, periodic_u_) ? 0 : std::abs(g.x) / length(jet.pu);
+    const double gv =
+        pinned(q.y, -g.y, box_.lo.y, box_.hi.y, periodic_v_) ? 0 : std::abs(g.y) / length(jet.pv);
     return std::max(std::isfinite(gu) ? gu : 0, std::isfinite(gv) ? gv : 0);
   }
 

@@ -10,9 +10,10 @@
 namespace dupin {
 
 /// Parameters of the point of the surface that is nearest to p, near `guess`.
-/// Plane, cylinder, cone, sphere, torus: in closed form, angles as close to the guess's as whole turns can bring them; where the
-/// nearest point does not tell an angle (on an axis), the guess's is kept. Of a double cone the nappe is the guess's.
-/// Other kinds: Newton's method from the guess (of a revolution or extrusion only the profile's parameter is guessed), kept within the domain (periodic directions run on), at most
+/// Plane, cylinder, cone, sphere, torus: in closed form, angles as close to the guess's as whole turns can
+/// bring them; where the nearest point does not tell an angle (on an axis), the guess's is kept. Of a double
+/// cone the nappe is the guess's. Other kinds: Newton's method from the guess (of a revolution or extrusion
+/// only the profile's parameter is guessed), kept within the domain (periodic directions run on), at most
 /// kInvertSteps steps, each of which must come nearer. Empty if it did not converge.
 std::optional<Vec2> invert(const Surface& surface, const Vec3& p, Vec2 guess);
 

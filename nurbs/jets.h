@@ -1,8 +1,8 @@
 // Inside the folder: derivative jets of any order up to kMaxOrder, laid out as triangles.
 //
-// An offset needs one order more of its base than is asked of it, so the families evaluate beyond the three orders of
-// the public jets. Entry (i, j), the derivative ∂ⁱ⁺ʲ/∂uⁱ∂vʲ, stands at jet_index(i, j): by total order, then by j,
-// which is also the order of SurfaceJet's members.
+// An offset needs one order more of its base than is asked of it, so the families evaluate beyond the three
+// orders of the public jets. Entry (i, j), the derivative ∂ⁱ⁺ʲ/∂uⁱ∂vʲ, stands at jet_index(i, j): by total
+// order, then by j, which is also the order of SurfaceJet's members.
 #ifndef DUPIN_NURBS_JETS_H
 #define DUPIN_NURBS_JETS_H
 
@@ -12,13 +12,17 @@
 namespace dupin {
 
 inline constexpr int kMaxOrder = 5;
-constexpr int jet_index(int i, int j) { return (i + j) * (i + j + 1) / 2 + j; }
-constexpr int jet_size(int order) { return (order + 1) * (order + 2) / 2; }
+constexpr int jet_index(int i, int j) {
+  return (i + j) * (i + j + 1) / 2 + j;
+}
+constexpr int jet_size(int order) {
+  return (order + 1) * (order + 2) / 2;
+}
 
 /// Binomial coefficients up to kMaxOrder, and factorials.
-inline constexpr double kBinomial[kMaxOrder + 1][kMaxOrder + 1] = {{1, 0, 0, 0, 0, 0},  {1, 1, 0, 0, 0, 0},
-                                                                   {1, 2, 1, 0, 0, 0},  {1, 3, 3, 1, 0, 0},
-                                                                   {1, 4, 6, 4, 1, 0},  {1, 5, 10, 10, 5, 1}};
+inline constexpr double kBinomial[kMaxOrder + 1][kMaxOrder + 1] = {{1, 0, 0, 0, 0, 0}, {1, 1, 0, 0, 0, 0},
+                                                                   {1, 2, 1, 0, 0, 0}, {1, 3, 3, 1, 0, 0},
+                                                                   {1, 4, 6, 4, 1, 0}, {1, 5, 10, 10, 5, 1}};
 inline constexpr double kFactorial[kMaxOrder + 1] = {1, 1, 2, 6, 24, 120};
 
 /// Derivatives 0 … order of cos and sin.

@@ -18,9 +18,9 @@ int find_span(std::span<const double> knots, int degree, double t, bool from_lef
 
 namespace {
 
-// Level q of the triangle turns the q functions of degree q − 1 into the q + 1 of degree q; both the values and the
-// derivatives need the reciprocals of the same knot differences, kept in `inverse`, level after level. The m-th
-// derivatives of degree q come from the (m−1)-th of degree q − 1 by
+// Level q of the triangle turns the q functions of degree q − 1 into the q + 1 of degree q; both the values
+// and the derivatives need the reciprocals of the same knot differences, kept in `inverse`, level after
+// level. The m-th derivatives of degree q come from the (m−1)-th of degree q − 1 by
 //   N'[r] = q (N[r−1] / (k[s+r] − k[s+r−q]) − N[r] / (k[s+r+1] − k[s+r+1−q])).
 // A degree known at compile time unrolls everything.
 template <int kDegree>
@@ -65,13 +65,19 @@ void basis_of_degree(const double* knots, int degree, int span, double t, int or
 
 }  // namespace
 
-void basis_derivatives(std::span<const double> knots, int degree, int span, double t, int order, double* out) {
+void basis_derivatives(std::span<const double> knots, int degree, int span, double t, int order,
+                       double* out) {
   switch (degree) {
-    case 1: return basis_of_degree<1>(knots.data(), degree, span, t, order, out);
-    case 2: return basis_of_degree<2>(knots.data(), degree, span, t, order, out);
-    case 3: return basis_of_degree<3>(knots.data(), degree, span, t, order, out);
-    case 5: return basis_of_degree<5>(knots.data(), degree, span, t, order, out);
-    default: return basis_of_degree<0>(knots.data(), degree, span, t, order, out);
+    case 1:
+      return basis_of_degree<1>(knots.data(), degree, span, t, order, out);
+    case 2:
+      return basis_of_degree<2>(knots.data(), degree, span, t, order, out);
+    case 3:
+      return basis_of_degree<3>(knots.data(), degree, span, t, order, out);
+    case 5:
+      return basis_of_degree<5>(knots.data(), degree, span, t, order, out);
+    default:
+      return basis_of_degree<0>(knots.data(), degree, span, t, order, out);
   }
 }
 

@@ -1,8 +1,8 @@
 // B-spline bases: knot spans and the derivatives of basis functions.
 //
-// A knot vector here is always the full one, every knot repeated by its multiplicity: n poles of degree p have
-// n + p + 1 knots, non-decreasing. It need not be clamped, so a periodic spline is written with its first p
-// poles repeated at the end; its domain is [knots[p], knots[n]].
+// A knot vector here is always the full one, every knot repeated by its multiplicity: n poles of degree p
+// have n + p + 1 knots, non-decreasing. It need not be clamped, so a periodic spline is written with its
+// first p poles repeated at the end; its domain is [knots[p], knots[n]].
 #ifndef DUPIN_NURBS_KNOTS_H
 #define DUPIN_NURBS_KNOTS_H
 

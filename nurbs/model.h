@@ -1,11 +1,12 @@
 // What a CAD file holds, in our own terms: parts with exact faces, placed by instances.
 //
-// Geometry is stored once a part; an assembly's repeated parts are instances. Faces refer to surfaces, and edges
-// to curves, by index within their part. Lengths are millimetres unless `unit_note` says otherwise.
+// Geometry is stored once a part; an assembly's repeated parts are instances. Faces refer to surfaces, and
+// edges to curves, by index within their part. Lengths are millimetres unless `unit_note` says otherwise.
 //
-// Invariants, which `check(model)` verifies and the reader's hand-over relies on: every index is in range, every number is
-// finite, knot vectors are non-decreasing and of the right length, every loop is closed in the parameter plane to
-// within the face's tolerance (seams run twice, collapsed edges are straight segments in parameters).
+// Invariants, which `check(model)` verifies and the reader's hand-over relies on: every index is in range,
+// every number is finite, knot vectors are non-decreasing and of the right length, every loop is closed in
+// the parameter plane to within the face's tolerance (seams run twice, collapsed edges are straight segments
+// in parameters).
 #ifndef DUPIN_NURBS_MODEL_H
 #define DUPIN_NURBS_MODEL_H
 
@@ -31,8 +32,8 @@ struct Color {
 struct Edge {
   std::optional<Curve3> curve;  ///< none for a degenerate edge (a pole of a sphere, a collapsed side)
   double t0 = 0, t1 = 0;        ///< the edge is the curve over [t0, t1], t0 < t1
-  double tolerance = 0;         ///< how far curve, pcurves and vertices may lie from each other, in model units
-  bool smooth = false;          ///< its two faces meet with a common tangent plane (or it is a seam): no feature line
+  double tolerance = 0;  ///< how far curve, pcurves and vertices may lie from each other, in model units
+  bool smooth = false;  ///< its two faces meet with a common tangent plane (or it is a seam): no feature line
 };
 
 /// One use of an edge by a loop. The pcurve runs with the edge's parameter over the edge's [t0, t1].
@@ -57,7 +58,8 @@ struct Face {
   std::string name;
 };
 
-/// A face's, or a whole mesh part's, triangles: the tessellated reference, or faces that a file has only as triangles.
+/// A face's, or a whole mesh part's, triangles: the tessellated reference, or faces that a file has only as
+/// triangles.
 struct TriangleMesh {
   std::vector<std::array<float, 3>> positions;  ///< relative to `origin`
   std::vector<std::array<float, 3>> normals;    ///< unit, outward; as many as positions
@@ -72,9 +74,10 @@ struct Part {
   std::vector<Surface> surfaces;
   std::vector<Edge> edges;
   std::vector<Face> faces;
-  bool closed = false;  ///< the faces bound a solid without a gap, normals outward: turned-away faces are never seen
-  Box3 box;             ///< contains every face
-  TriangleMesh mesh;    ///< only when a tessellation was asked for
+  bool closed =
+      false;  ///< the faces bound a solid without a gap, normals outward: turned-away faces are never seen
+  Box3 box;   ///< contains every face
+  TriangleMesh mesh;  ///< only when a tessellation was asked for
 };
 
 struct Instance {
@@ -85,8 +88,8 @@ struct Instance {
 };
 
 struct SkippedFace {
-  std::string name;    ///< the face's name, or "face N of PART"
-  std::string reason;  ///< one line
+  std::string name;         ///< the face's name, or "face N of PART"
+  std::string reason;       ///< one line
   std::uint32_t count = 1;  ///< how many face instances that is
 };
 

@@ -11,18 +11,28 @@ namespace {
 /// Frames and directions may be this far from orthonormal.
 constexpr double kOrthonormal = 1e-6;
 constexpr int kDeepestOffset = 3;  ///< an offset of offsets of …
-/// A gap between trims may be this many times the tolerances of the face and its edges, and no larger than this part of the face's
-/// parameter box where the surface does not say (a pole).
+/// A gap between trims may be this many times the tolerances of the face and its edges, and no larger than
+/// this part of the face's parameter box where the surface does not say (a pole).
 constexpr double kGapFactor = 10, kGapOfBox = 0.02;
 
 // Each returns the reason why something is not valid, or nullptr.
 using Reason = const char*;
 
-bool finite(double x) { return std::isfinite(x); }
-bool finite(const Vec2& p) { return finite(p.x) && finite(p.y); }
-bool finite(const Vec3& p) { return is_finite(p); }
-double norm(const Vec2& p) { return std::hypot(p.x, p.y); }
-double norm(const Vec3& p) { return length(p); }
+bool finite(double x) {
+  return std::isfinite(x);
+}
+bool finite(const Vec2& p) {
+  return finite(p.x) && finite(p.y);
+}
+bool finite(const Vec3& p) {
+  return is_finite(p);
+}
+double norm(const Vec2& p) {
+  return std::hypot(p.x, p.y);
+}
+double norm(const Vec3& p) {
+  return length(p);
+}
 
 template <class V>
 bool orthonormal(const V& x, const V& y) {
@@ -35,7 +45,8 @@ Reason check_knots(const std::vector<double>& knots, int degree, std::size_t pol
   if (poles < static_cast<std::size_t>(degree) + 1) return "a spline has too few poles";
   if (knots.size() != poles + degree + 1) return "a spline has a wrong number of knots";
   for (std::size_t i = 0; i < knots.size(); ++i)
-    if (!finite(knots[i]) || (i > 0 && knots[i] < knots[i - 1])) return "a spline's knots decrease or are not finite";
+    if (!finite(knots[i]) || (i > 0 && knots[i] < knots[i - 1]))
+      return "a spline's knots decrease or are not finite";
   if (!(knots[degree] < knots[poles])) return "a spline's domain is empty";
   return nullptr;
 }
@@ -62,7 +73,8 @@ struct CurveChecker {
     return finite(a) && finite(b) && a > 0 && b > 0 ? nullptr : "a conic's radius is not positive";
   }
   Reason operator()(const LineOf<V>& l) const {
-    return finite(l.origin) && finite(l.direction) && norm(l.direction) > 0 ? nullptr : "a line has no direction";
+    return finite(l.origin) && finite(l.direction) && norm(l.direction) > 0 ? nullptr
+                                                                            : "a line has no direction";
   }
   Reason operator()(const CircleOf<V>& c) const { return conic(c.center, c.x, c.y, c.radius, c.radius); }
   Reason operator()(const EllipseOf<V>& e) const { return conic(e.center, e.x, e.y, e.major, e.minor); }
@@ -102,7 +114,8 @@ struct SurfaceChecker {
   Reason operator()(const Cylinder& c) const { return frame_and_radius(c.frame, c.radius); }
   Reason operator()(const Cone& c) const {
     if (!finite(c.radius) || c.radius < 0) return "a cone's radius is negative";
-    if (!(std::abs(c.half_angle) < 1.5707963267948967) || c.half_angle == 0) return "a cone's angle is out of range";
+    if (!(std::abs(c.half_angle) < 1.5707963267948967) || c.half_angle == 0)
+      return "a cone's angle is out of range";
     return frame(c.frame);
   }
   Reason operator()(const Sphere& s) const { return frame_and_radius(s.frame, s.radius); }
@@ -112,8 +125,10 @@ struct SurfaceChecker {
   }
   Reason operator()(const BsplineSurface& s) const {
     if (s.count_u < 2 || s.count_v < 2) return "a spline surface has too few poles";
-    if (Reason reason = check_knots(s.knots_u, s.degree_u, static_cast<std::size_t>(s.count_u))) return reason;
-    if (Reason reason = check_knots(s.knots_v, s.degree_v, static_cast<std::size_t>(s.count_v))) return reason;
+    if (Reason reason = check_knots(s.knots_u, s.degree_u, static_cast<std::size_t>(s.count_u)))
+      return reason;
+    if (Reason reason = check_knots(s.knots_v, s.degree_v, static_cast<std::size_t>(s.count_v)))
+      return reason;
     if (s.poles.size() != static_cast<std::size_t>(s.count_u) * static_cast<std::size_t>(s.count_v))
       return "a spline surface has a wrong number of poles";
     return check_poles(s.poles, s.weights);
@@ -124,12 +139,14 @@ struct SurfaceChecker {
     return check_curve(r.profile);
   }
   Reason operator()(const Extrusion& e) const {
-    if (!(std::abs(length(e.direction) - 1) < kOrthonormal)) return "an extrusion's direction is not a unit vector";
+    if (!(std::abs(length(e.direction) - 1) < kOrthonormal))
+      return "an extrusion's direction is not a unit vector";
     return check_curve(e.profile);
   }
   Reason operator()(const OffsetSurface& o) const {
     if (!o.base || depth >= kDeepestOffset) return "an offset surface has no base";
-    return finite(o.distance) ? check_surface(*o.base, depth + 1) : "an offset surface's distance is not finite";
+    return finite(o.distance) ? check_surface(*o.base, depth + 1)
+                              : "an offset surface's distance is not finite";
   }
 };
 
@@ -177,7 +194,8 @@ Reason check_loop(const Part& part, const Face& face, const Loop& loop) {
 
 Reason check_face(const Part& part, const Face& face) {
   if (face.surface >= part.surfaces.size()) return "it refers to no surface";
-  if (!finite(face.uv_box.lo) || !finite(face.uv_box.hi) || face.uv_box.empty()) return "its parameter box is empty";
+  if (!finite(face.uv_box.lo) || !finite(face.uv_box.hi) || face.uv_box.empty())
+    return "its parameter box is empty";
   if (!finite(face.tolerance) || face.tolerance < 0) return "its tolerance is negative";
   for (const Loop& loop : face.loops)
     if (Reason reason = check_loop(part, face, loop)) return reason;
@@ -225,7 +243,8 @@ Status check(const Model& model) {
     const Instance& instance = model.instances[i];
     const Mat3& m = instance.to_world.linear;
     if (instance.part >= model.parts.size()) return failure("instance", i, "", "it refers to no part");
-    if (!finite(m.x) || !finite(m.y) || !finite(m.z) || !finite(instance.to_world.translation) || determinant(m) == 0)
+    if (!finite(m.x) || !finite(m.y) || !finite(m.z) || !finite(instance.to_world.translation) ||
+        determinant(m) == 0)
       return failure("instance", i, "", "its placement is not finite or flattens it");
   }
   return {};

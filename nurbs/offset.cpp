@@ -24,7 +24,8 @@ bool vanishes(const Vec3& normal, const Vec3* base) {
 }
 
 /// Where the base's normal vanishes: the limit towards the middle of the domain, and no derivatives.
-void evaluate_singular(const OffsetSurface& surface, double u, double v, int order, const Vec3& p, Vec3* out) {
+void evaluate_singular(const OffsetSurface& surface, double u, double v, int order, const Vec3& p,
+                       Vec3* out) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (int k = 0; k < jet_size(order); ++k) out[k] = {nan, nan, nan};
   Box2 box = domain(*surface.base);

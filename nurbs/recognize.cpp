@@ -31,11 +31,13 @@ std::vector<OrientedPoint> sample(const Surface& surface, const Box2& region) {
 }
 
 bool within(const Surface& shape, const std::vector<OrientedPoint>& points, double tolerance) {
-  return std::all_of(points.begin(), points.end(),
-                     [&](const OrientedPoint& point) { return std::abs(signed_distance(shape, point.p)) <= tolerance; });
+  return std::all_of(points.begin(), points.end(), [&](const OrientedPoint& point) {
+    return std::abs(signed_distance(shape, point.p)) <= tolerance;
+  });
 }
 
-std::optional<Deviation> certify_all(const std::vector<BezierPatch>& patches, double tolerance, const BoundCell& bound) {
+std::optional<Deviation> certify_all(const std::vector<BezierPatch>& patches, double tolerance,
+                                     const BoundCell& bound) {
   Deviation out;
   for (const BezierPatch& patch : patches) {
     const auto deviation = certify(patch, {tolerance, kRecognitionAngle}, bound);
@@ -61,7 +63,8 @@ double middle_length(const Surface& surface, const Box2& region, bool along_u) {
   return sum;
 }
 
-/// What the frames are chosen by: a point near the region's middle, its normal, and a tangent along the longer side.
+/// What the frames are chosen by: a point near the region's middle, its normal, and a tangent along the
+/// longer side.
 struct Middle {
   Vec3 p, n, along;
 };
@@ -106,7 +109,9 @@ void orient(Cylinder& cylinder, const Middle& middle) {
   f.origin += f.z * dot(f.z, middle.p - f.origin);
   f = turned_to(f, middle);
 }
-void orient(Torus& torus, const Middle& middle) { torus.frame = turned_to(torus.frame, middle); }
+void orient(Torus& torus, const Middle& middle) {
+  torus.frame = turned_to(torus.frame, middle);
+}
 template <class Other>
 void orient(Other&, const Middle&) {}
 
@@ -130,8 +135,8 @@ Surface oriented(Surface shape, const Middle& middle) {
   return shape;
 }
 
-std::optional<Recognized> as_shape(const Surface& fitted, const Middle& middle, const std::vector<BezierPatch>& patches,
-                                   double tolerance) {
+std::optional<Recognized> as_shape(const Surface& fitted, const Middle& middle,
+                                   const std::vector<BezierPatch>& patches, double tolerance) {
   const Surface shape = oriented(fitted, middle);
   const auto bound = [&](const BezierPatch& cell) -> CellBounds {
     const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -152,7 +157,8 @@ BsplineSurface transposed(const BsplineSurface& s) {
   std::swap(t.periodic_u, t.periodic_v);
   for (int i = 0; i < s.count_u; ++i)
     for (int j = 0; j < s.count_v; ++j) {
-      const std::size_t from = static_cast<std::size_t>(i) * s.count_v + j, to = static_cast<std::size_t>(j) * s.count_u + i;
+      const std::size_t from = static_cast<std::size_t>(i) * s.count_v + j,
+                        to = static_cast<std::size_t>(j) * s.count_u + i;
       t.poles[to] = s.poles[from];
       if (!s.weights.empty()) t.weights[to] = s.weights[from];
     }
@@ -226,7 +232,8 @@ std::optional<Recognized> as_revolution(const BsplineSurface& spline, const Box2
   for (std::size_t i = 0; i < patches.size(); ++i) {
     const BezierPatch profile = as_patch(pieces[i % pieces.size()]);
     const auto bound = [&](const BezierPatch& cell) {
-      const double t0 = surface_to_patch_v(profile, cell.domain.lo.y), t1 = surface_to_patch_v(profile, cell.domain.hi.y);
+      const double t0 = surface_to_patch_v(profile, cell.domain.lo.y),
+                   t1 = surface_to_patch_v(profile, cell.domain.hi.y);
       return revolution_bounds(frame, subpatch(profile, 0, 1, t0, t1), cell);
     };
     const auto deviation = certify(patches[i], {tolerance, kRecognitionAngle}, bound);
@@ -293,7 +300,8 @@ struct OffsetOf {
 std::optional<Recognized> recognize_offset(const OffsetSurface& offset, const Box2& region) {
   const auto surface = std::visit(OffsetOf{offset.distance, region}, offset.base->geometry);
   if (!surface) return std::nullopt;
-  const double size = length(point_at(*surface, region.lo.x, region.lo.y)) + length(point_at(*surface, region.hi.x, region.hi.y));
+  const double size = length(point_at(*surface, region.lo.x, region.lo.y)) +
+                      length(point_at(*surface, region.hi.x, region.hi.y));
   return Recognized{*surface, 1e-15 * (size + std::abs(offset.distance)), 1e-15};
 }
 
@@ -301,13 +309,15 @@ std::optional<Recognized> recognize_offset(const OffsetSurface& offset, const Bo
 
 std::optional<Recognized> recognize(const Surface& surface, const Box2& uv_box, double tolerance) {
   if (surface.geometry.index() <= 4) return std::nullopt;
-  if (const auto* offset = std::get_if<OffsetSurface>(&surface.geometry)) return recognize_offset(*offset, uv_box);
+  if (const auto* offset = std::get_if<OffsetSurface>(&surface.geometry))
+    return recognize_offset(*offset, uv_box);
   const std::vector<OrientedPoint> points = sample(surface, uv_box);
   if (points.size() < kSamples * kSamples / 2) return std::nullopt;
   const Middle middle = middle_of(surface, uv_box);
   if (!(length(middle.n) > 0)) return std::nullopt;
   std::vector<BezierPatch> patches;
-  for (ShapeKind kind : {ShapeKind::plane, ShapeKind::sphere, ShapeKind::cylinder, ShapeKind::cone, ShapeKind::torus}) {
+  for (ShapeKind kind :
+       {ShapeKind::plane, ShapeKind::sphere, ShapeKind::cylinder, ShapeKind::cone, ShapeKind::torus}) {
     const auto fitted = fit_shape(kind, points);
     if (!fitted || !within(*fitted, points, tolerance)) continue;
     if (patches.empty()) patches = bezier_patches(surface, uv_box);

@@ -1,8 +1,10 @@
-// Shapes through points with normals: linear least squares from how their normals lie, then Gauss–Newton on the distances.
+// Shapes through points with normals: linear least squares from how their normals lie, then Gauss–Newton on
+// the distances.
 //
 //   plane     the points' covariance                  sphere    p = c + r n
-//   cylinder  normals ⟂ axis; p = c + r n across it   cone      normals at one angle to the axis; tangent planes meet in the apex
-//   torus     all normals meet the axis, so (n, p × n) lies in a linear line complex (Pottmann & Wallner); in the meridian
+//   cylinder  normals ⟂ axis; p = c + r n across it   cone      normals at one angle to the axis; tangent
+//   planes meet in the apex torus     all normals meet the axis, so (n, p × n) lies in a linear line complex
+//   (Pottmann & Wallner); in the meridian
 //             plane p = c + r n again
 #include "shape_fit.h"
 
@@ -112,7 +114,9 @@ Matrix<3> covariance(const Points& points, const Vec3& center, Get get) {
   return m;
 }
 
-Vec3 to_vec(const Vector<3>& v) { return {v[0], v[1], v[2]}; }
+Vec3 to_vec(const Vector<3>& v) {
+  return {v[0], v[1], v[2]};
+}
 
 template <class Get>
 Vec3 mean(const Points& points, Get get) {
@@ -120,12 +124,17 @@ Vec3 mean(const Points& points, Get get) {
   for (const OrientedPoint& point : points) sum += get(point);
   return sum / static_cast<double>(points.size());
 }
-Vec3 position(const OrientedPoint& point) { return point.p; }
-Vec3 normal(const OrientedPoint& point) { return point.n; }
+Vec3 position(const OrientedPoint& point) {
+  return point.p;
+}
+Vec3 normal(const OrientedPoint& point) {
+  return point.n;
+}
 
 std::optional<Surface> fit_plane(const Points& points) {
   const Vec3 center = mean(points, position);
-  return Surface{Plane{frame_about(center, normalized(to_vec(least_eigenvector<3>(covariance(points, center, position)))))}};
+  return Surface{Plane{
+      frame_about(center, normalized(to_vec(least_eigenvector<3>(covariance(points, center, position)))))}};
 }
 
 std::optional<Surface> fit_sphere(const Points& points) {
@@ -159,7 +168,8 @@ std::optional<Surface> fit_cylinder(const Points& points) {
   const Frame3 frame = frame_about({}, axis);
   std::vector<CirclePoint> circle;
   for (const OrientedPoint& point : points)
-    circle.push_back({dot(point.p, frame.x), dot(point.p, frame.y), dot(point.n, frame.x), dot(point.n, frame.y)});
+    circle.push_back(
+        {dot(point.p, frame.x), dot(point.p, frame.y), dot(point.n, frame.x), dot(point.n, frame.y)});
   const auto c = fit_circle(circle);
   if (!c || (*c)[2] == 0) return std::nullopt;
   return Surface{Cylinder{frame_about(frame.to_world({(*c)[0], (*c)[1], 0}), axis), std::abs((*c)[2])}};
@@ -168,7 +178,8 @@ std::optional<Surface> fit_cylinder(const Points& points) {
 std::optional<Surface> fit_cone(const Points& points) {
   Vec3 axis = normalized(to_vec(least_eigenvector<3>(covariance(points, mean(points, normal), normal))));
   LeastSquares<3> system;
-  for (const OrientedPoint& point : points) system.add({point.n.x, point.n.y, point.n.z}, dot(point.n, point.p));
+  for (const OrientedPoint& point : points)
+    system.add({point.n.x, point.n.y, point.n.z}, dot(point.n, point.p));
   const auto x = system.solve();
   if (!x) return std::nullopt;
   const Vec3 apex = to_vec(*x), center = mean(points, position);
@@ -196,31 +207,43 @@ std::optional<Surface> fit_torus(const Points& points) {
   }
   const auto c = fit_circle(circle);
   if (!c || !((*c)[0] > 0) || (*c)[2] == 0) return std::nullopt;
-  return Surface{Torus{frame_about(axis->origin + axis->direction * (*c)[1], axis->direction), (*c)[0], std::abs((*c)[2])}};
+  return Surface{Torus{frame_about(axis->origin + axis->direction * (*c)[1], axis->direction), (*c)[0],
+                       std::abs((*c)[2])}};
 }
 
 std::optional<Surface> fit_linear(ShapeKind kind, const Points& points) {
   switch (kind) {
-    case ShapeKind::plane: return fit_plane(points);
-    case ShapeKind::sphere: return fit_sphere(points);
-    case ShapeKind::cylinder: return fit_cylinder(points);
-    case ShapeKind::cone: return fit_cone(points);
-    case ShapeKind::torus: return fit_torus(points);
+    case ShapeKind::plane:
+      return fit_plane(points);
+    case ShapeKind::sphere:
+      return fit_sphere(points);
+    case ShapeKind::cylinder:
+      return fit_cylinder(points);
+    case ShapeKind::cone:
+      return fit_cone(points);
+    case ShapeKind::torus:
+      return fit_torus(points);
   }
   return std::nullopt;
 }
 
 Frame3& frame_of(Surface& shape) {
   switch (shape.geometry.index()) {
-    case 0: return std::get<Plane>(shape.geometry).frame;
-    case 1: return std::get<Cylinder>(shape.geometry).frame;
-    case 2: return std::get<Cone>(shape.geometry).frame;
-    case 3: return std::get<Sphere>(shape.geometry).frame;
-    default: return std::get<Torus>(shape.geometry).frame;
+    case 0:
+      return std::get<Plane>(shape.geometry).frame;
+    case 1:
+      return std::get<Cylinder>(shape.geometry).frame;
+    case 2:
+      return std::get<Cone>(shape.geometry).frame;
+    case 3:
+      return std::get<Sphere>(shape.geometry).frame;
+    default:
+      return std::get<Torus>(shape.geometry).frame;
   }
 }
 
-/// A shape has 7 parameters here: a translation, turns about x and y, and two sizes, not all of which matter to each.
+/// A shape has 7 parameters here: a translation, turns about x and y, and two sizes, not all of which matter
+/// to each.
 constexpr int kParameters = 7;
 
 Surface changed(const Surface& shape, const Vector<kParameters>& by) {
@@ -238,12 +261,13 @@ Surface changed(const Surface& shape, const Vector<kParameters>& by) {
 
 double largest_distance(const Surface& shape, const Points& points) {
   double largest = 0;
-  for (const OrientedPoint& point : points) largest = std::max(largest, std::abs(signed_distance(shape, point.p)));
+  for (const OrientedPoint& point : points)
+    largest = std::max(largest, std::abs(signed_distance(shape, point.p)));
   return largest;
 }
 
-/// Gauss–Newton on the distances, whose gradients are differences: linear fits are weighted oddly, and rounding of the axis shows
-/// far from it. Points of unit extent.
+/// Gauss–Newton on the distances, whose gradients are differences: linear fits are weighted oddly, and
+/// rounding of the axis shows far from it. Points of unit extent.
 Surface refined(Surface shape, const Points& points) {
   double best = largest_distance(shape, points);
   for (int step = 0; step < 4; ++step) {
@@ -259,7 +283,8 @@ Surface refined(Surface shape, const Points& points) {
     for (const OrientedPoint& point : points) {
       Vector<kParameters> row;
       for (int k = 0; k < kParameters; ++k)
-        row[k] = (signed_distance(around[k][1], point.p) - signed_distance(around[k][0], point.p)) / (2 * kStep);
+        row[k] =
+            (signed_distance(around[k][1], point.p) - signed_distance(around[k][0], point.p)) / (2 * kStep);
       system.add(row, -signed_distance(shape, point.p));
     }
     const auto by = system.solve(1e-12);
@@ -310,22 +335,26 @@ std::optional<Surface> fit_shape(ShapeKind kind, const std::vector<OrientedPoint
 }
 
 double signed_distance(const Surface& shape, const Vec3& p) {
-  if (const auto* plane = std::get_if<Plane>(&shape.geometry)) return dot(plane->frame.z, p - plane->frame.origin);
-  if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) return distance(p, sphere->frame.origin) - sphere->radius;
+  if (const auto* plane = std::get_if<Plane>(&shape.geometry))
+    return dot(plane->frame.z, p - plane->frame.origin);
+  if (const auto* sphere = std::get_if<Sphere>(&shape.geometry))
+    return distance(p, sphere->frame.origin) - sphere->radius;
   if (const auto* cylinder = std::get_if<Cylinder>(&shape.geometry)) {
     const Vec3 q = cylinder->frame.to_local(p);
     return std::hypot(q.x, q.y) - cylinder->radius;
   }
   if (const auto* cone = std::get_if<Cone>(&shape.geometry)) {
     const Vec3 q = cone->frame.to_local(p);
-    return (std::hypot(q.x, q.y) - cone->radius) * std::cos(cone->half_angle) - q.z * std::sin(cone->half_angle);
+    return (std::hypot(q.x, q.y) - cone->radius) * std::cos(cone->half_angle) -
+           q.z * std::sin(cone->half_angle);
   }
   const auto& torus = std::get<Torus>(shape.geometry);
   const Vec3 q = torus.frame.to_local(p);
   return std::hypot(std::hypot(q.x, q.y) - torus.major, q.z) - torus.minor;
 }
 
-// The normal's line through p with direction n meets the axis through q with direction a if n·(q × a) + (p × n)·a = 0.
+// The normal's line through p with direction n meets the axis through q with direction a if n·(q × a) + (p ×
+// n)·a = 0.
 std::optional<Axis> fit_axis(const std::vector<OrientedPoint>& points) {
   Matrix<6> m{};
   for (const OrientedPoint& point : points) {

@@ -35,27 +35,39 @@ std::string_view kind_name(const Surface& surface) {
   return kNames[surface.geometry.index()];
 }
 
-bool is_quadric(const Surface& surface) { return surface.geometry.index() < 4; }
+bool is_quadric(const Surface& surface) {
+  return surface.geometry.index() < 4;
+}
 
 Box2 domain(const Surface& surface) {
-  const Overloaded visitor{
-      [](const Plane&) { return Box2{{-kInfinity, -kInfinity}, {kInfinity, kInfinity}}; },
-      [](const Cylinder&) { return Box2{{0, -kInfinity}, {kTurn, kInfinity}}; },
-      [](const Cone&) { return Box2{{0, -kInfinity}, {kTurn, kInfinity}}; },
-      [](const Sphere&) { return Box2{{0, -kTurn / 4}, {kTurn, kTurn / 4}}; },
-      [](const Torus&) { return Box2{{0, 0}, {kTurn, kTurn}}; },
-      [](const BsplineSurface& s) {
-        return Box2{{s.knots_u[s.degree_u], s.knots_v[s.degree_v]}, {s.knots_u[s.count_u], s.knots_v[s.count_v]}};
-      },
-      [](const Revolution& s) {
-        const ParameterRange v = domain(s.profile);
-        return Box2{{0, v.lo}, {kTurn, v.hi}};
-      },
-      [](const Extrusion& s) {
-        const ParameterRange u = domain(s.profile);
-        return Box2{{u.lo, -kInfinity}, {u.hi, kInfinity}};
-      },
-      [](const OffsetSurface& s) { return domain(*s.base); }};
+  const Overloaded visitor{[](const Plane&) {
+                             return Box2{{-kInfinity, -kInfinity}, {kInfinity, kInfinity}};
+                           },
+                           [](const Cylinder&) {
+                             return Box2{{0, -kInfinity}, {kTurn, kInfinity}};
+                           },
+                           [](const Cone&) {
+                             return Box2{{0, -kInfinity}, {kTurn, kInfinity}};
+                           },
+                           [](const Sphere&) {
+                             return Box2{{0, -kTurn / 4}, {kTurn, kTurn / 4}};
+                           },
+                           [](const Torus&) {
+                             return Box2{{0, 0}, {kTurn, kTurn}};
+                           },
+                           [](const BsplineSurface& s) {
+                             return Box2{{s.knots_u[s.degree_u], s.knots_v[s.degree_v]},
+                                         {s.knots_u[s.count_u], s.knots_v[s.count_v]}};
+                           },
+                           [](const Revolution& s) {
+                             const ParameterRange v = domain(s.profile);
+                             return Box2{{0, v.lo}, {kTurn, v.hi}};
+                           },
+                           [](const Extrusion& s) {
+                             const ParameterRange u = domain(s.profile);
+                             return Box2{{u.lo, -kInfinity}, {u.hi, kInfinity}};
+                           },
+                           [](const OffsetSurface& s) { return domain(*s.base); }};
   return std::visit(visitor, surface.geometry);
 }
 

@@ -10,7 +10,8 @@ void evaluate_into(const Revolution& surface, double u, double v, int order, Vec
   evaluate_into(surface.profile, v, order, profile);
   profile[0] -= surface.axis_origin;
   for (int j = 0; j <= order; ++j) {
-    const Vec3 along = axis * dot(axis, profile[j]), across = profile[j] - along, turned = cross(axis, across);
+    const Vec3 along = axis * dot(axis, profile[j]), across = profile[j] - along,
+               turned = cross(axis, across);
     for (int i = 0; i + j <= order; ++i) out[jet_index(i, j)] = across * trig.c[i] + turned * trig.s[i];
     out[jet_index(0, j)] += along;
   }

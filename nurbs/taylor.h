@@ -1,6 +1,7 @@
 // Inside the folder: truncated Taylor series in one and two variables, for offsets.
 //
-// A series holds a_ij = ∂ⁱ⁺ʲf / (i! j!); products are convolutions, and a power f^a follows from f·∂(f^a) = a·f^a·∂f.
+// A series holds a_ij = ∂ⁱ⁺ʲf / (i! j!); products are convolutions, and a power f^a follows from f·∂(f^a) =
+// a·f^a·∂f.
 #ifndef DUPIN_NURBS_TAYLOR_H
 #define DUPIN_NURBS_TAYLOR_H
 

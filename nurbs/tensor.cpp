@@ -71,10 +71,15 @@ void visit_coefficients(const Tensor& a, Visit visit) {
 
 }  // namespace
 
-Tensor operator+(const Tensor& a, const Tensor& b) { return combined(a, b, 1); }
-Tensor operator-(const Tensor& a, const Tensor& b) { return combined(a, b, -1); }
+Tensor operator+(const Tensor& a, const Tensor& b) {
+  return combined(a, b, 1);
+}
+Tensor operator-(const Tensor& a, const Tensor& b) {
+  return combined(a, b, -1);
+}
 
-// Unscaled, the derivative's coefficients are p (b[i+1] − b[i]); p C(p−1, i) / C(p, i+1) = i + 1 and p C(p−1, i) / C(p, i) = p − i.
+// Unscaled, the derivative's coefficients are p (b[i+1] − b[i]); p C(p−1, i) / C(p, i+1) = i + 1 and p C(p−1,
+// i) / C(p, i) = p − i.
 Tensor derivative_u(const Tensor& a) {
   if (a.p == 0) return Tensor(0, a.q);
   Tensor out(a.p - 1, a.q);

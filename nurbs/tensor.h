@@ -1,7 +1,7 @@
 // Inside the folder: polynomials in two variables over the unit square, in scaled Bernstein form.
 //
-// Coefficient (i, j) is stored times C(p, i)·C(q, j): products are then plain convolutions (Farouki & Rajan), and the convex-hull
-// property bounds the polynomial by its unscaled coefficients.
+// Coefficient (i, j) is stored times C(p, i)·C(q, j): products are then plain convolutions (Farouki & Rajan),
+// and the convex-hull property bounds the polynomial by its unscaled coefficients.
 #ifndef DUPIN_NURBS_TENSOR_H
 #define DUPIN_NURBS_TENSOR_H
 
@@ -35,7 +35,9 @@ Tensor operator*(const Tensor& a, double s);
 /// Of any two degrees: the lower is raised.
 Tensor operator+(const Tensor& a, const Tensor& b);
 Tensor operator-(const Tensor& a, const Tensor& b);
-inline Tensor squared(const Tensor& a) { return a * a; }
+inline Tensor squared(const Tensor& a) {
+  return a * a;
+}
 Tensor raised(const Tensor& a, int p, int q);
 Tensor derivative_u(const Tensor& a);
 Tensor derivative_v(const Tensor& a);

@@ -19,12 +19,17 @@ std::vector<Sample> all_samples() {
   for (Sample& s : testing::swept_samples(true)) out.push_back(std::move(s));
   Random random(2);
   for (const bool rational : {false, true}) {
-    out.push_back({"spline", {testing::random_surface(random, {.degree_u = 4, .degree_v = 2, .rational = rational, .repeat_knots = true})},
+    out.push_back({"spline",
+                   {testing::random_surface(
+                       random, {.degree_u = 4, .degree_v = 2, .rational = rational, .repeat_knots = true})},
                    {{0, 0}, {1, 1}}});
-    out.push_back({"part of a spline", {testing::random_surface(random, {.degree_u = 3, .degree_v = 11, .rational = rational})},
+    out.push_back({"part of a spline",
+                   {testing::random_surface(random, {.degree_u = 3, .degree_v = 11, .rational = rational})},
                    {{0.13, 0.2}, {0.77, 0.21}}});
-    out.push_back({"across the seam of a spline", {testing::random_surface(random, {.extra_u = 4, .rational = rational, .periodic_u = true})},
-                   {{-0.4, 0}, {0.5, 1}}});
+    out.push_back(
+        {"across the seam of a spline",
+         {testing::random_surface(random, {.extra_u = 4, .rational = rational, .periodic_u = true})},
+         {{-0.4, 0}, {0.5, 1}}});
   }
   return out;
 }
@@ -43,7 +48,8 @@ TEST(BezierPatches, ReproduceEveryKind) {
     const std::vector<BezierPatch> patches = bezier_patches(sample.surface, sample.region);
     ASSERT_FALSE(patches.empty()) << sample.name;
     for (const BezierPatch& patch : patches) {
-      for (int i = 0; i < 6; ++i) expect_on_surface(sample, patch, random.between(0, 1), random.between(0, 1));
+      for (int i = 0; i < 6; ++i)
+        expect_on_surface(sample, patch, random.between(0, 1), random.between(0, 1));
       for (const double s : {0.0, 0.5, 1.0}) expect_on_surface(sample, patch, s, 1 - s);
     }
   }
@@ -57,8 +63,12 @@ TEST(BezierPatches, TileTheRegion) {
       const Vec2 size = patch.domain.size();
       EXPECT_GT(size.x, 0);
       EXPECT_GT(size.y, 0);
-      if (patch.u_is_angle) { EXPECT_LE(size.x, std::numbers::pi / 2 + 1e-8); }
-      if (patch.v_is_angle) { EXPECT_LE(size.y, std::numbers::pi / 2 + 1e-8); }
+      if (patch.u_is_angle) {
+        EXPECT_LE(size.x, std::numbers::pi / 2 + 1e-8);
+      }
+      if (patch.v_is_angle) {
+        EXPECT_LE(size.y, std::numbers::pi / 2 + 1e-8);
+      }
       area += size.x * size.y;
       whole.add(patch.domain.lo);
       whole.add(patch.domain.hi);
@@ -71,7 +81,8 @@ TEST(BezierPatches, TileTheRegion) {
 
 TEST(BezierPatches, AreCutAtEveryKnot) {
   Random random(4);
-  const BsplineSurface s = testing::random_surface(random, {.extra_u = 5, .extra_v = 4, .repeat_knots = true});
+  const BsplineSurface s =
+      testing::random_surface(random, {.extra_u = 5, .extra_v = 4, .repeat_knots = true});
   for (const BezierPatch& patch : bezier_patches({s}, {{0, 0}, {1, 1}})) {
     for (double k : s.knots_u) EXPECT_FALSE(k > patch.domain.lo.x && k < patch.domain.hi.x);
     for (double k : s.knots_v) EXPECT_FALSE(k > patch.domain.lo.y && k < patch.domain.hi.y);
@@ -84,7 +95,8 @@ TEST(BezierPatches, DoNotExistForWhatIsNotRational) {
   for (const Sample& sample : testing::offset_samples())
     EXPECT_TRUE(bezier_patches(sample.surface, sample.region).empty()) << sample.name;
   for (const Sample& sample : testing::swept_samples(false))
-    if (sample.name.find("hyperbola") != std::string::npos || sample.name.find("offset") != std::string::npos) {
+    if (sample.name.find("hyperbola") != std::string::npos ||
+        sample.name.find("offset") != std::string::npos) {
       EXPECT_TRUE(bezier_patches(sample.surface, sample.region).empty()) << sample.name;
     }
   EXPECT_TRUE(bezier_patches({Plane{}}, {}).empty());
@@ -107,7 +119,8 @@ TEST(Subpatch, IsThePartOfThePatch) {
   Random random(5);
   for (const Sample& sample : all_samples())
     for (const BezierPatch& patch : bezier_patches(sample.surface, sample.region)) {
-      double s0 = random.between(0, 1), s1 = random.between(0, 1), t0 = random.between(0, 1), t1 = random.between(0, 1);
+      double s0 = random.between(0, 1), s1 = random.between(0, 1), t0 = random.between(0, 1),
+             t1 = random.between(0, 1);
       if (s0 > s1) std::swap(s0, s1);
       if (t0 > t1) std::swap(t0, t1);
       const BezierPatch part = subpatch(patch, s0, s1, t0, t1);
@@ -115,7 +128,8 @@ TEST(Subpatch, IsThePartOfThePatch) {
       EXPECT_EQ(part.domain.hi.y, patch_to_surface_v(patch, t1));
       if (s1 - s0 < 0.01 || t1 - t0 < 0.01) continue;
       for (int i = 0; i < 3; ++i) expect_on_surface(sample, part, random.between(0, 1), random.between(0, 1));
-      for (const auto& [s, t] : {std::pair(0.0, 1.0), {1.0, 0.0}, {0.5, 0.5}}) expect_on_surface(sample, part, s, t);
+      for (const auto& [s, t] : {std::pair(0.0, 1.0), {1.0, 0.0}, {0.5, 0.5}})
+        expect_on_surface(sample, part, s, t);
     }
 }
 
@@ -144,7 +158,9 @@ TEST(BezierCurves, ReproduceTheCurve) {
     EXPECT_EQ(pieces.front().t0, range.lo.x);
     EXPECT_EQ(pieces.back().t1, range.hi.x);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      if (i > 0) { EXPECT_EQ(pieces[i].t0, pieces[i - 1].t1); }
+      if (i > 0) {
+        EXPECT_EQ(pieces[i].t0, pieces[i - 1].t1);
+      }
       // As a patch that is straight in v.
       BezierPatch patch;
       patch.degree_u = pieces[i].degree;
@@ -153,7 +169,8 @@ TEST(BezierCurves, ReproduceTheCurve) {
       patch.u_is_angle = pieces[i].is_angle;
       patch.poles = pieces[i].poles;
       for (const double s : {0.0, 0.21, 0.5, 0.93, 1.0})
-        EXPECT_LE(distance(point_at(patch, s, 0), point_at(curve, patch_to_surface_u(patch, s))), 10 * kBezierError);
+        EXPECT_LE(distance(point_at(patch, s, 0), point_at(curve, patch_to_surface_u(patch, s))),
+                  10 * kBezierError);
     }
   }
   const auto base = std::make_shared<const Curve3>(curves[1].first);

@@ -21,7 +21,8 @@ std::vector<Sample> rational_samples() {
   for (int degree = 1; degree <= 6; ++degree)
     for (const bool rational : {false, true})
       out.push_back({"spline",
-                     {testing::random_surface(random, {.degree_u = degree, .degree_v = 7 - degree, .rational = rational})},
+                     {testing::random_surface(
+                         random, {.degree_u = degree, .degree_v = 7 - degree, .rational = rational})},
                      {{0, 0}, {1, 1}}});
   return out;
 }
@@ -40,11 +41,13 @@ TEST(Bounds, HoldEveryPointAndNormal) {
           const double u = patch_to_surface_u(patch, 1e-9 + (1 - 2e-9) * i / 12);
           const double v = patch_to_surface_v(patch, 1e-9 + (1 - 2e-9) * j / 12);
           const SurfaceJet jet = evaluate(sample.surface, u, v, 1);
-          const Vec3 slack{1e-14 * (1 + length(jet.p)), 1e-14 * (1 + length(jet.p)), 1e-14 * (1 + length(jet.p))};
+          const Vec3 slack{1e-14 * (1 + length(jet.p)), 1e-14 * (1 + length(jet.p)),
+                           1e-14 * (1 + length(jet.p))};
           EXPECT_TRUE((Box3{box.lo - slack, box.hi + slack}.contains(jet.p))) << sample.name;
           if (!cone.bounded()) continue;
           const Vec3 n = normalized(cross(jet.pu, jet.pv));
-          EXPECT_LE(std::atan2(length(cross(n, cone.axis)), dot(n, cone.axis)), cone.angle + 1e-12) << sample.name;
+          EXPECT_LE(std::atan2(length(cross(n, cone.axis)), dot(n, cone.axis)), cone.angle + 1e-12)
+              << sample.name;
         }
     }
   EXPECT_GT(bounded, 0.8 * all);  // the bounds say something
@@ -98,7 +101,8 @@ TEST(Invert, FindsTheParametersOfAPoint) {
     for (int i = 0; i < 10; ++i) {
       const Vec2 size = sample.region.size();
       const Vec2 at = sample.region.lo + Vec2{size.x * random.between(0, 1), size.y * random.between(0, 1)};
-      const Vec2 guess = at + Vec2{size.x * random.between(-0.03, 0.03), size.y * random.between(-0.03, 0.03)};
+      const Vec2 guess =
+          at + Vec2{size.x * random.between(-0.03, 0.03), size.y * random.between(-0.03, 0.03)};
       const auto found = invert(sample.surface, point_at(sample.surface, at.x, at.y), guess);
       ASSERT_TRUE(found) << sample.name;
       EXPECT_LE(length(*found - at), 1e-9) << sample.name << " at " << at.x << ", " << at.y;

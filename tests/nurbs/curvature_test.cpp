@@ -1,4 +1,5 @@
-// Principal curvatures: against 100-digit fundamental forms and closed forms, and limits where the parametrisation collapses.
+// Principal curvatures: against 100-digit fundamental forms and closed forms, and limits where the
+// parametrisation collapses.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -45,7 +46,8 @@ TEST(Curvature, AgreesWithTheFundamentalForms) {
     const BsplineSurface s = testing::random_surface(
         random, {.degree_u = 2 + static_cast<int>(seed % 4), .degree_v = 3, .rational = seed % 2 == 0});
     for (int i = 0; i < 4; ++i)
-      compare_with_oracle({s}, testing::off_knots(random, s.knots_u, 0, 1), testing::off_knots(random, s.knots_v, 0, 1), 100);
+      compare_with_oracle({s}, testing::off_knots(random, s.knots_u, 0, 1),
+                          testing::off_knots(random, s.knots_v, 0, 1), 100);
   }
   Random random(31);
   for (const testing::Sample& sample : testing::analytic_samples())
@@ -58,7 +60,8 @@ TEST(Curvature, KeepsItsDigitsFarFromTheOrigin) {
   Random random(13);
   const BsplineSurface s = testing::random_surface(random, {.rational = true, .origin = {1e6, 1e6, -1e6}});
   for (int i = 0; i < 4; ++i)
-    compare_with_oracle({s}, testing::off_knots(random, s.knots_u, 0, 1), testing::off_knots(random, s.knots_v, 0, 1), 100);
+    compare_with_oracle({s}, testing::off_knots(random, s.knots_u, 0, 1),
+                        testing::off_knots(random, s.knots_v, 0, 1), 100);
 }
 
 /// x, y, z as a bicubic over [0,1]² whose two partials enclose an angle of about `skew`.
@@ -75,7 +78,8 @@ TEST(Curvature, SurvivesNearlyParallelPartials) {
     const Surface surface{sheared(skew)};
     const oracle::PrincipalCurvatures want = oracle::curvatures(surface, 0.3, 0.6);
     const Curvature got = principal_curvature(evaluate(surface, 0.3, 0.6, 2));
-    const double tolerance = 10 * kCurvatureError * want.scale / skew;  // the normal itself turns by rounding / skew
+    const double tolerance =
+        10 * kCurvatureError * want.scale / skew;  // the normal itself turns by rounding / skew
     EXPECT_NEAR(got.k1, want.k1, tolerance);
     EXPECT_NEAR(got.k2, want.k2, tolerance);
     EXPECT_LE(distance(got.n, want.n), 1e-14 / skew);
@@ -84,7 +88,8 @@ TEST(Curvature, SurvivesNearlyParallelPartials) {
 }
 
 TEST(Curvature, SeparatesNearlyEqualCurvatures) {
-  // z = ½ (1 x² + (1 + gap) y²), whose curvatures at the origin differ by `gap`, seen through a turned parametrisation.
+  // z = ½ (1 x² + (1 + gap) y²), whose curvatures at the origin differ by `gap`, seen through a turned
+  // parametrisation.
   for (const double gap : {1e-3, 1e-6, 1e-9}) {
     const double c = 0.6, s = 0.8;
     SurfaceJet jet;
@@ -155,7 +160,8 @@ TEST(CurvatureLimit, AtThePolesOfASphere) {
     }
 }
 
-/// S(u,v) = (u v, v, h(u v, v)) with h = ½ (a x² + 2 b x y + c y²) + d x³: the edge v = 0 collapses into the origin.
+/// S(u,v) = (u v, v, h(u v, v)) with h = ½ (a x² + 2 b x y + c y²) + d x³: the edge v = 0 collapses into the
+/// origin.
 BsplineSurface collapsed(double a, double b, double c, double d) {
   // In Bézier form of degree (3, 3), by blossoming monomials: uⁱ vʲ has poles C(k,i)/C(3,i) · C(l,j)/C(3,j).
   BsplineSurface s;
@@ -208,7 +214,8 @@ TEST(CurvatureLimit, IsNotTakenWhereTheSurfaceIsRegular) {
   const BsplineSurface s = testing::random_surface(random, {.rational = true});
   for (int i = 0; i < 20; ++i) {
     const double u = random.between(0, 1), v = random.between(0, 1);
-    const Curvature direct = principal_curvature(evaluate({s}, u, v, 2)), by_surface = principal_curvature({s}, u, v, {0.5, 0.5});
+    const Curvature direct = principal_curvature(evaluate({s}, u, v, 2)),
+                    by_surface = principal_curvature({s}, u, v, {0.5, 0.5});
     EXPECT_EQ(direct.k1, by_surface.k1);
     EXPECT_EQ(by_surface.kind, Kind::regular);
   }

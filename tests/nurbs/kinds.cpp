@@ -23,12 +23,11 @@ std::vector<Profile> profiles(const Frame3& f, bool rational_only) {
   const Vec3 center = f.to_world({3, 0, 0.5});
   Bspline3 spline = random_curve(random, 3, 3, true, false);
   for (Vec3& p : spline.poles) p = center + f.x * p.x + f.z * p.y + f.y * (0.1 * p.z);
-  std::vector<Profile> out = {
-      {"line", {LineOf<Vec3>{center, normalized(f.x + f.z * 2)}}, -1, 1.5},
-      {"circle", {CircleOf<Vec3>{center, f.x, f.z, 0.7}}, 0.3, 5},
-      {"ellipse", {EllipseOf<Vec3>{center, f.z, f.x, 1.1, 0.4}}, -1, 1.2},
-      {"parabola", {ParabolaOf<Vec3>{center, f.x, f.z, 0.8}}, -1, 1.3},
-      {"spline", {spline}, 0, 1}};
+  std::vector<Profile> out = {{"line", {LineOf<Vec3>{center, normalized(f.x + f.z * 2)}}, -1, 1.5},
+                              {"circle", {CircleOf<Vec3>{center, f.x, f.z, 0.7}}, 0.3, 5},
+                              {"ellipse", {EllipseOf<Vec3>{center, f.z, f.x, 1.1, 0.4}}, -1, 1.2},
+                              {"parabola", {ParabolaOf<Vec3>{center, f.x, f.z, 0.8}}, -1, 1.3},
+                              {"spline", {spline}, 0, 1}};
   if (rational_only) return out;
   out.push_back({"hyperbola", {HyperbolaOf<Vec3>{center, f.x, f.z, 0.5, 0.6}}, -0.7, 0.9});
   out.push_back({"offset circle", offset_of({CircleOf<Vec3>{center, f.x, f.z, 0.7}}, 0.2, f.y), 0.3, 2});
@@ -59,8 +58,11 @@ std::vector<Sample> swept_samples(bool rational_only) {
   const Frame3 f = random.frame();
   std::vector<Sample> out;
   for (const Profile& p : profiles(f, rational_only)) {
-    out.push_back({"revolution of a " + p.name, {Revolution{f.origin, f.z, p.curve}}, {{-0.5, p.t0}, {5.5, p.t1}}});
-    out.push_back({"extrusion of a " + p.name, {Extrusion{p.curve, normalized(f.y + f.x * 0.3)}}, {{p.t0, -2}, {p.t1, 1}}});
+    out.push_back(
+        {"revolution of a " + p.name, {Revolution{f.origin, f.z, p.curve}}, {{-0.5, p.t0}, {5.5, p.t1}}});
+    out.push_back({"extrusion of a " + p.name,
+                   {Extrusion{p.curve, normalized(f.y + f.x * 0.3)}},
+                   {{p.t0, -2}, {p.t1, 1}}});
   }
   return out;
 }
@@ -71,7 +73,8 @@ std::vector<Sample> offset_samples() {
   const auto offset = [](const Surface& base, double distance) {
     return Surface{OffsetSurface{std::make_shared<const Surface>(base), distance}};
   };
-  const Surface torus{Torus{f, 2.5, 0.8}}, spline{random_surface(random, {.degree_u = 4, .extra_u = 2, .rational = true})};
+  const Surface torus{Torus{f, 2.5, 0.8}},
+      spline{random_surface(random, {.degree_u = 4, .extra_u = 2, .rational = true})};
   const Surface extrusion = swept_samples(true).back().surface;
   return {{"offset of a torus", offset(torus, 0.3), {{0.5, 0}, {6.5, 6}}},
           {"offset of a spline", offset(spline, -0.05), {{0, 0}, {1, 1}}},

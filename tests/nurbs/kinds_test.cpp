@@ -1,4 +1,5 @@
-// Analytic, swept and offset surfaces, and conics: against 100-digit evaluation of their formulas, and closed forms.
+// Analytic, swept and offset surfaces, and conics: against 100-digit evaluation of their formulas, and closed
+// forms.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -17,10 +18,11 @@ using testing::Sample;
 constexpr double kTurn = 2 * std::numbers::pi;
 
 double largest_error(const SurfaceJet& got, const SurfaceJet& want) {
-  const double errors[] = {distance(got.p, want.p),       distance(got.pu, want.pu),     distance(got.pv, want.pv),
-                           distance(got.puu, want.puu),   distance(got.puv, want.puv),   distance(got.pvv, want.pvv),
-                           distance(got.puuu, want.puuu), distance(got.puuv, want.puuv), distance(got.puvv, want.puvv),
-                           distance(got.pvvv, want.pvvv)};
+  const double errors[] = {distance(got.p, want.p),       distance(got.pu, want.pu),
+                           distance(got.pv, want.pv),     distance(got.puu, want.puu),
+                           distance(got.puv, want.puv),   distance(got.pvv, want.pvv),
+                           distance(got.puuu, want.puuu), distance(got.puuv, want.puuv),
+                           distance(got.puvv, want.puvv), distance(got.pvvv, want.pvvv)};
   double largest = 0;
   for (double e : errors) largest = e <= largest ? largest : e;  // NaN gets through
   return largest;
@@ -35,8 +37,9 @@ TEST(AnalyticSurface, AgreesWithItsFormula) {
   for (const Sample& sample : testing::analytic_samples())
     for (int i = 0; i < 4; ++i) {
       const Vec2 q = point_in(random, sample.region);
-      EXPECT_LE(largest_error(evaluate(sample.surface, q.x, q.y, 3), oracle::surface_jet(sample.surface, q.x, q.y)),
-                kEvaluateError * sample.extent)
+      EXPECT_LE(
+          largest_error(evaluate(sample.surface, q.x, q.y, 3), oracle::surface_jet(sample.surface, q.x, q.y)),
+          kEvaluateError * sample.extent)
           << sample.name;
     }
 }
@@ -51,8 +54,9 @@ TEST(SweptSurface, AgreesWithItsFormula) {
   for (const Sample& sample : testing::swept_samples(false))
     for (int i = 0; i < 3; ++i) {
       const Vec2 q = point_in(random, sample.region);
-      EXPECT_LE(largest_error(evaluate(sample.surface, q.x, q.y, 3), oracle::surface_jet(sample.surface, q.x, q.y)),
-                4 * kEvaluateError * sample.extent * third_power_of_rate(sample))
+      EXPECT_LE(
+          largest_error(evaluate(sample.surface, q.x, q.y, 3), oracle::surface_jet(sample.surface, q.x, q.y)),
+          4 * kEvaluateError * sample.extent * third_power_of_rate(sample))
           << sample.name;
     }
 }
@@ -60,16 +64,20 @@ TEST(SweptSurface, AgreesWithItsFormula) {
 TEST(OffsetSurface, AgreesWithItsDefinition) {
   Random random(7);
   for (const Sample& sample : testing::offset_samples()) {
-    if (sample.name == "offset of an offset") continue;  // differences of differences of differences: closed form below
+    if (sample.name == "offset of an offset")
+      continue;  // differences of differences of differences: closed form below
     for (int i = 0; i < 3; ++i) {
       const Vec2 q = point_in(random, sample.region);
-      const SurfaceJet got = evaluate(sample.surface, q.x, q.y, 3), want = oracle::surface_jet(sample.surface, q.x, q.y);
+      const SurfaceJet got = evaluate(sample.surface, q.x, q.y, 3),
+                       want = oracle::surface_jet(sample.surface, q.x, q.y);
       EXPECT_LE(distance(got.p, want.p), 4 * kEvaluateError * sample.extent) << sample.name;
-      const double size = length(want.puu) + length(want.puv) + length(want.pvv), third = 1 + length(want.puuu) + length(want.pvvv);
-      EXPECT_LE(distance(got.puu, want.puu) + distance(got.puv, want.puv) + distance(got.pvv, want.pvv), 1e-11 * size)
+      const double size = length(want.puu) + length(want.puv) + length(want.pvv),
+                   third = 1 + length(want.puuu) + length(want.pvvv);
+      EXPECT_LE(distance(got.puu, want.puu) + distance(got.puv, want.puv) + distance(got.pvv, want.pvv),
+                1e-11 * size)
           << sample.name;
-      EXPECT_LE(distance(got.puuu, want.puuu) + distance(got.puuv, want.puuv) + distance(got.puvv, want.puvv) +
-                    distance(got.pvvv, want.pvvv),
+      EXPECT_LE(distance(got.puuu, want.puuu) + distance(got.puuv, want.puuv) +
+                    distance(got.puvv, want.puvv) + distance(got.pvvv, want.pvvv),
                 1e-10 * third)
           << sample.name;
     }
@@ -87,8 +95,10 @@ TEST(OffsetSurface, OfATorusIsATorus) {
     const double sign = left_handed ? -1 : 1;
     for (int i = 0; i < 5; ++i) {
       const double u = random.between(0, kTurn), v = random.between(0, kTurn);
-      EXPECT_LE(largest_error(evaluate(*once, u, v, 3), evaluate({Torus{f, 3, 0.7 + sign * 0.25}}, u, v, 3)), 1e-13);
-      EXPECT_LE(largest_error(evaluate(twice, u, v, 3), evaluate({Torus{f, 3, 0.7 - sign * 0.25}}, u, v, 3)), 1e-12);
+      EXPECT_LE(largest_error(evaluate(*once, u, v, 3), evaluate({Torus{f, 3, 0.7 + sign * 0.25}}, u, v, 3)),
+                1e-13);
+      EXPECT_LE(largest_error(evaluate(twice, u, v, 3), evaluate({Torus{f, 3, 0.7 - sign * 0.25}}, u, v, 3)),
+                1e-12);
     }
     EXPECT_EQ(period_u(twice), kTurn);
     EXPECT_EQ(period_v(twice), kTurn);
@@ -130,9 +140,12 @@ TEST(Curve, AgreesWithItsFormula) {
   const Vec2 x{0.6, 0.8}, y{-0.8, 0.6};
   const auto ellipse2 = std::make_shared<const Curve2>(Curve2{EllipseOf<Vec2>{{1, 2}, x, y, 2, 0.7}});
   const auto ellipse3 = std::make_shared<const Curve3>(Curve3{EllipseOf<Vec3>{f.origin, f.x, f.y, 2, 0.7}});
-  const std::vector<Curve2> plane = {{LineOf<Vec2>{{1, 2}, {3, -1}}},          {CircleOf<Vec2>{{1, 2}, x, y, 1.4}},
-                                     *ellipse2,                                {ParabolaOf<Vec2>{{1, 2}, x, y, 0.6}},
-                                     {HyperbolaOf<Vec2>{{1, 2}, x, y, 1, 0.5}}, {OffsetCurveOf<Vec2>{ellipse2, 0.1, {}}}};
+  const std::vector<Curve2> plane = {{LineOf<Vec2>{{1, 2}, {3, -1}}},
+                                     {CircleOf<Vec2>{{1, 2}, x, y, 1.4}},
+                                     *ellipse2,
+                                     {ParabolaOf<Vec2>{{1, 2}, x, y, 0.6}},
+                                     {HyperbolaOf<Vec2>{{1, 2}, x, y, 1, 0.5}},
+                                     {OffsetCurveOf<Vec2>{ellipse2, 0.1, {}}}};
   const std::vector<Curve3> space = {{LineOf<Vec3>{f.origin, f.z * 2}},
                                      {CircleOf<Vec3>{f.origin, f.x, f.y, 1.4}},
                                      *ellipse3,
@@ -143,11 +156,13 @@ TEST(Curve, AgreesWithItsFormula) {
     const double t = random.between(-1.5, 1.5);
     for (std::size_t c = 0; c < plane.size(); ++c) {
       const auto got = evaluate(plane[c], t, 3), want = oracle::curve_jet(plane[c], t);
-      for (int k = 0; k < 4; ++k) EXPECT_LE(length(got[k] - want[k]), 5e-13) << "curve " << c << ", derivative " << k;
+      for (int k = 0; k < 4; ++k)
+        EXPECT_LE(length(got[k] - want[k]), 5e-13) << "curve " << c << ", derivative " << k;
     }
     for (std::size_t c = 0; c < space.size(); ++c) {
       const auto got = evaluate(space[c], t, 3), want = oracle::curve_jet(space[c], t);
-      for (int k = 0; k < 4; ++k) EXPECT_LE(length(got[k] - want[k]), 5e-13) << "curve " << c << ", derivative " << k;
+      for (int k = 0; k < 4; ++k)
+        EXPECT_LE(length(got[k] - want[k]), 5e-13) << "curve " << c << ", derivative " << k;
     }
   }
 }

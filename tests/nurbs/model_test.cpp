@@ -72,8 +72,8 @@ TEST(ModelCheck, AcceptsAPoleWhereOnlyParametersMove) {
   constexpr double kPole = 1.5707963267948966;
   Face& face = part.faces[0];
   face.uv_box = {{0, 0}, {1, kPole}};
-  face.loops[0] = {side(0, false, {0, 0}, {1, 0}), side(1, false, {1, 0}, {1, kPole}), side(2, false, {1, kPole}, {0, kPole}),
-                   side(3, false, {0, kPole}, {0, 0})};
+  face.loops[0] = {side(0, false, {0, 0}, {1, 0}), side(1, false, {1, 0}, {1, kPole}),
+                   side(2, false, {1, kPole}, {0, kPole}), side(3, false, {0, kPole}, {0, 0})};
   face.loops[0][2].degenerate = true;
   part.edges[2].curve.reset();
   EXPECT_TRUE(check(model).ok()) << check(model).message;
@@ -105,8 +105,12 @@ TriangleMesh& with_mesh(Model& m) {
   mesh.faces = {0};
   return mesh;
 }
-Surface offset_of(Surface s) { return {OffsetSurface{std::make_shared<const Surface>(std::move(s)), 1}}; }
-LineOf<Vec3>& edge_line(Model& m) { return std::get<LineOf<Vec3>>(m.parts[0].edges[0].curve->geometry); }
+Surface offset_of(Surface s) {
+  return {OffsetSurface{std::make_shared<const Surface>(std::move(s)), 1}};
+}
+LineOf<Vec3>& edge_line(Model& m) {
+  return std::get<LineOf<Vec3>>(m.parts[0].edges[0].curve->geometry);
+}
 
 const double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -119,7 +123,10 @@ const std::vector<Damage>& damages() {
       {"no edge", [](Model& m) { m.parts[0].faces[0].loops[0][0].edge = 4; }},
       {"has no curve", [](Model& m) { m.parts[0].edges[1].curve.reset(); }},
       {"is empty", [](Model& m) { m.parts[0].faces[0].loops.emplace_back(); }},
-      {"not closed", [](Model& m) { m.parts[0].faces[0].loops[0][0] = side(0, false, {0, 1e-3}, {1, 0}); }},
+      {"not closed",
+       [](Model& m) {
+         m.parts[0].faces[0].loops[0][0] = side(0, false, {0, 1e-3}, {1, 0});
+       }},
       {"not closed", [](Model& m) { m.parts[0].faces[0].loops[0].pop_back(); }},
       {"not closed", [](Model& m) { m.parts[0].faces[0].loops[0][1].reversed = true; }},
       {"box is empty", [](Model& m) { m.parts[0].faces[0].uv_box = {}; }},
@@ -128,25 +135,53 @@ const std::vector<Damage>& damages() {
       {"range is empty", [](Model& m) { m.parts[0].edges[0].t1 = 0; }},
       {"no direction", [](Model& m) { edge_line(m).direction = {}; }},
       {"no direction", [](Model& m) { edge_line(m).origin.z = kNan; }},
-      {"perpendicular", [](Model& m) { m.parts[0].edges[0].curve = {CircleOf<Vec3>{{}, {1, 0, 0}, {1, 0, 0}, 1}}; }},
-      {"radius", [](Model& m) { m.parts[0].edges[0].curve = {CircleOf<Vec3>{{}, {1, 0, 0}, {0, 1, 0}, 0}}; }},
-      {"orthonormal", [](Model& m) { std::get<Plane>(m.parts[0].surfaces[0].geometry).frame.x = {2, 0, 0}; }},
-      {"radius", [](Model& m) { m.parts[0].surfaces[0] = {Sphere{{}, -1}}; }},
-      {"angle", [](Model& m) { m.parts[0].surfaces[0] = {Cone{{}, 1, 1.6}}; }},
-      {"major", [](Model& m) { m.parts[0].surfaces[0] = {Torus{{}, -1, 0.5}}; }},
+      {"perpendicular",
+       [](Model& m) {
+         m.parts[0].edges[0].curve = {CircleOf<Vec3>{{}, {1, 0, 0}, {1, 0, 0}, 1}};
+       }},
+      {"radius",
+       [](Model& m) {
+         m.parts[0].edges[0].curve = {CircleOf<Vec3>{{}, {1, 0, 0}, {0, 1, 0}, 0}};
+       }},
+      {"orthonormal",
+       [](Model& m) {
+         std::get<Plane>(m.parts[0].surfaces[0].geometry).frame.x = {2, 0, 0};
+       }},
+      {"radius",
+       [](Model& m) {
+         m.parts[0].surfaces[0] = {Sphere{{}, -1}};
+       }},
+      {"angle",
+       [](Model& m) {
+         m.parts[0].surfaces[0] = {Cone{{}, 1, 1.6}};
+       }},
+      {"major",
+       [](Model& m) {
+         m.parts[0].surfaces[0] = {Torus{{}, -1, 0.5}};
+       }},
       {"axis", [](Model& m) { m.parts[0].surfaces[0] = {Revolution{}}; }},
       {"direction", [](Model& m) { m.parts[0].surfaces[0] = {Extrusion{}}; }},
       {"base", [](Model& m) { m.parts[0].surfaces[0] = {OffsetSurface{}}; }},
-      {"base", [](Model& m) { m.parts[0].surfaces[0] = offset_of(offset_of(offset_of(offset_of({Plane{}})))); }},
+      {"base",
+       [](Model& m) { m.parts[0].surfaces[0] = offset_of(offset_of(offset_of(offset_of({Plane{}})))); }},
       {"degree", [](Model& m) { with_spline(m).degree_u = 26; }},
       {"number of knots", [](Model& m) { with_spline(m).knots_v.push_back(1); }},
       {"decrease", [](Model& m) { with_spline(m).knots_u[1] = 2; }},
-      {"domain", [](Model& m) { with_spline(m).knots_u = {0, 0, 0, 0}; }},
+      {"domain",
+       [](Model& m) {
+         with_spline(m).knots_u = {0, 0, 0, 0};
+       }},
       {"number of poles", [](Model& m) { with_spline(m).poles.pop_back(); }},
       {"too few", [](Model& m) { with_spline(m).count_u = -2; }},
       {"not finite", [](Model& m) { with_spline(m).poles[0].x = kNan; }},
-      {"weight", [](Model& m) { with_spline(m).weights = {1, 1, 1, 0}; }},
-      {"weights", [](Model& m) { with_spline(m).weights = {1, 1, 1}; }},
+      {"weight",
+       [](Model& m) {
+         with_spline(m).weights = {1, 1, 1, 0};
+       }},
+      {"weights",
+       [](Model& m) {
+         with_spline(m).weights = {1, 1, 1};
+       }},
       {"refers to no point", [](Model& m) { with_mesh(m).triangles[0] = 3; }},
       {"refers to no face", [](Model& m) { with_mesh(m).faces[0] = 1; }},
       {"normals", [](Model& m) { with_mesh(m).normals.pop_back(); }},
@@ -165,7 +200,8 @@ TEST(ModelCheck, FindsWhatDoesNotHold) {
     damage.apply(model);
     const Status status = check(model);
     EXPECT_EQ(status.code, StatusCode::unreadable) << damage.message;
-    EXPECT_NE(status.message.find(damage.message), std::string::npos) << damage.message << ": " << status.message;
+    EXPECT_NE(status.message.find(damage.message), std::string::npos)
+        << damage.message << ": " << status.message;
   }
 }
 

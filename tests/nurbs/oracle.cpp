@@ -14,16 +14,30 @@ using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_
 struct Point {
   Real x = 0, y = 0, z = 0;
 };
-Point operator+(const Point& a, const Point& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Point operator-(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Point operator*(const Point& a, const Real& s) { return {a.x * s, a.y * s, a.z * s}; }
-Real dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Point operator+(const Point& a, const Point& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+Point operator-(const Point& a, const Point& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+Point operator*(const Point& a, const Real& s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
+Real dot(const Point& a, const Point& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 Point cross(const Point& a, const Point& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-Real norm(const Point& a) { return sqrt(dot(a, a)); }
-Point exact(const Vec3& p) { return {p.x, p.y, p.z}; }
-Point exact(const Vec2& p) { return {p.x, p.y, 0}; }
+Real norm(const Point& a) {
+  return sqrt(dot(a, a));
+}
+Point exact(const Vec3& p) {
+  return {p.x, p.y, p.z};
+}
+Point exact(const Vec2& p) {
+  return {p.x, p.y, 0};
+}
 Vec3 rounded(const Point& p) {
   return {p.x.convert_to<double>(), p.y.convert_to<double>(), p.z.convert_to<double>()};
 }
@@ -38,7 +52,8 @@ class Basis {
     if (const auto found = known_.find(key); found != known_.end()) return found->second;
     Real sum = 0;
     if (knots_[i + p] > knots_[i])
-      if (const Real n = (*this)(i, p - 1); n != 0) sum += (t_ - knots_[i]) / (Real(knots_[i + p]) - knots_[i]) * n;
+      if (const Real n = (*this)(i, p - 1); n != 0)
+        sum += (t_ - knots_[i]) / (Real(knots_[i + p]) - knots_[i]) * n;
     if (knots_[i + p + 1] > knots_[i + 1])
       if (const Real n = (*this)(i + 1, p - 1); n != 0)
         sum += (knots_[i + p + 1] - t_) / (Real(knots_[i + p + 1]) - knots_[i + 1]) * n;
@@ -47,7 +62,8 @@ class Basis {
 
  private:
   bool inside(int i) const {
-    return side_ == Side::backward ? t_ > knots_[i] && t_ <= knots_[i + 1] : t_ >= knots_[i] && t_ < knots_[i + 1];
+    return side_ == Side::backward ? t_ > knots_[i] && t_ <= knots_[i + 1]
+                                   : t_ >= knots_[i] && t_ < knots_[i + 1];
   }
   const std::vector<double>& knots_;
   Real t_;
@@ -66,9 +82,15 @@ struct CurvePosition {
   Point conic(const V& c, const V& x, const V& y, const Real& a, const Real& b) const {
     return exact(c) + exact(x) * a + exact(y) * b;
   }
-  Point operator()(const CircleOf<V>& c) const { return conic(c.center, c.x, c.y, c.radius * cos(t), c.radius * sin(t)); }
-  Point operator()(const EllipseOf<V>& e) const { return conic(e.center, e.x, e.y, e.major * cos(t), e.minor * sin(t)); }
-  Point operator()(const ParabolaOf<V>& p) const { return conic(p.vertex, p.x, p.y, t * t / (4 * Real(p.focal)), t); }
+  Point operator()(const CircleOf<V>& c) const {
+    return conic(c.center, c.x, c.y, c.radius * cos(t), c.radius * sin(t));
+  }
+  Point operator()(const EllipseOf<V>& e) const {
+    return conic(e.center, e.x, e.y, e.major * cos(t), e.minor * sin(t));
+  }
+  Point operator()(const ParabolaOf<V>& p) const {
+    return conic(p.vertex, p.x, p.y, t * t / (4 * Real(p.focal)), t);
+  }
   Point operator()(const HyperbolaOf<V>& h) const {
     return conic(h.center, h.x, h.y, h.major * cosh(t), h.minor * sinh(t));
   }
@@ -114,7 +136,9 @@ struct SurfacePosition {
     return round(c.frame, c.radius + v * sin(Real(c.half_angle)), v * cos(Real(c.half_angle)));
   }
   Point operator()(const Sphere& s) const { return round(s.frame, s.radius * cos(v), s.radius * sin(v)); }
-  Point operator()(const Torus& t) const { return round(t.frame, t.major + t.minor * cos(v), t.minor * sin(v)); }
+  Point operator()(const Torus& t) const {
+    return round(t.frame, t.major + t.minor * cos(v), t.minor * sin(v));
+  }
   Point operator()(const BsplineSurface& s) const {
     Basis basis_u(s.knots_u, u, side), basis_v(s.knots_v, v, side);
     std::vector<Real> along_v;
@@ -161,8 +185,10 @@ struct StencilEntry {
 };
 std::vector<StencilEntry> stencil(int k, Side side) {
   if (side == Side::central) {
-    static const std::vector<StencilEntry> kCentral[4] = {
-        {{0, 1}}, {{-1, -0.5}, {1, 0.5}}, {{-1, 1}, {0, -2}, {1, 1}}, {{-2, -0.5}, {-1, 1}, {1, -1}, {2, 0.5}}};
+    static const std::vector<StencilEntry> kCentral[4] = {{{0, 1}},
+                                                          {{-1, -0.5}, {1, 0.5}},
+                                                          {{-1, 1}, {0, -2}, {1, 1}},
+                                                          {{-2, -0.5}, {-1, 1}, {1, -1}, {2, 0.5}}};
     return kCentral[k];
   }
   static const std::vector<StencilEntry> kForward[4] = {
@@ -173,8 +199,11 @@ std::vector<StencilEntry> stencil(int k, Side side) {
   return entries;
 }
 
-// Offsets differentiate inside with a step of 1e-33 already, which leaves 66 digits; third differences take 36 of them.
-Real step(Side side) { return side == Side::central ? Real("1e-12") : Real("1e-20"); }
+// Offsets differentiate inside with a step of 1e-33 already, which leaves 66 digits; third differences take
+// 36 of them.
+Real step(Side side) {
+  return side == Side::central ? Real("1e-12") : Real("1e-20");
+}
 
 Real power(const Real& h, int k) {
   Real p = 1;
@@ -189,7 +218,8 @@ class Differences {
   Point operator()(int i, int j) {
     Point sum;
     for (const StencilEntry& a : stencil(i, side_))
-      for (const StencilEntry& b : stencil(j, side_)) sum = sum + at(a.offset, b.offset) * Real(a.weight * b.weight);
+      for (const StencilEntry& b : stencil(j, side_))
+        sum = sum + at(a.offset, b.offset) * Real(a.weight * b.weight);
     return sum * (1 / power(h_, i + j));
   }
 
@@ -223,7 +253,8 @@ std::array<Point, 4> curve_differences(const CurveOf<V>& curve, double t, Side s
 SurfaceJet surface_jet(const Surface& surface, double u, double v, Side side) {
   Differences d(surface, u, v, side);
   const auto get = [&d](int i, int j) { return rounded(d(i, j)); };
-  return {get(0, 0), get(1, 0), get(0, 1), get(2, 0), get(1, 1), get(0, 2), get(3, 0), get(2, 1), get(1, 2), get(0, 3)};
+  return {get(0, 0), get(1, 0), get(0, 1), get(2, 0), get(1, 1),
+          get(0, 2), get(3, 0), get(2, 1), get(1, 2), get(0, 3)};
 }
 
 std::array<Vec3, 4> curve_jet(const Curve3& curve, double t, Side side) {
@@ -242,11 +273,13 @@ PrincipalCurvatures curvatures(const Surface& surface, double u, double v) {
   Differences s(surface, u, v, Side::central);
   const Point su = s(1, 0), sv = s(0, 1), suu = s(2, 0), suv = s(1, 1), svv = s(0, 2);
   const Point normal = cross(su, sv), n = normal * (1 / norm(normal));
-  const Real E = dot(su, su), F = dot(su, sv), G = dot(sv, sv), L = dot(suu, n), M = dot(suv, n), N = dot(svv, n);
+  const Real E = dot(su, su), F = dot(su, sv), G = dot(sv, sv), L = dot(suu, n), M = dot(suv, n),
+             N = dot(svv, n);
   const Real area2 = E * G - F * F;
   const Real mean = (E * N - 2 * F * M + G * L) / (2 * area2), gauss = (L * N - M * M) / area2;
   const Real under = mean * mean - gauss, r = under > 0 ? Real(sqrt(under)) : Real(0);
-  const Real k1 = mean >= 0 ? Real(mean + r) : Real(mean - r), k2 = mean >= 0 ? Real(mean - r) : Real(mean + r);
+  const Real k1 = mean >= 0 ? Real(mean + r) : Real(mean - r),
+             k2 = mean >= 0 ? Real(mean - r) : Real(mean + r);
   // (II − k1 I)(x, y) = 0: the larger of the two rows.
   const Real a = L - k1 * E, b = M - k1 * F, c = N - k1 * G;
   Point d1 = abs(a) * G > abs(c) * E ? sv * a - su * b : su * c - sv * b;
@@ -254,7 +287,8 @@ PrincipalCurvatures curvatures(const Surface& surface, double u, double v) {
   const Real lu = norm(su), across = sqrt(area2) / lu, slope = F / E;
   const Real t = abs(slope), scale = norm(suu) / E + (norm(suv) + t * norm(suu)) / (lu * across) +
                                      (norm(svv) + 2 * t * norm(suv) + t * t * norm(suu)) / (across * across);
-  return {rounded(n), rounded(d1), k1.convert_to<double>(), k2.convert_to<double>(), scale.convert_to<double>()};
+  return {rounded(n), rounded(d1), k1.convert_to<double>(), k2.convert_to<double>(),
+          scale.convert_to<double>()};
 }
 
 }  // namespace dupin::oracle

@@ -32,8 +32,10 @@ std::vector<double> random_knots(Random& random, int degree, int extra, bool rep
   std::vector<double> inner;
   while (static_cast<int>(inner.size()) < extra) {
     const double t = random.between(0.05, 0.95);
-    const int times = repeat ? std::min(random.integer(1, degree), extra - static_cast<int>(inner.size())) : 1;
-    const bool near = std::any_of(inner.begin(), inner.end(), [t](double k) { return std::abs(k - t) < 0.02; });
+    const int times =
+        repeat ? std::min(random.integer(1, degree), extra - static_cast<int>(inner.size())) : 1;
+    const bool near =
+        std::any_of(inner.begin(), inner.end(), [t](double k) { return std::abs(k - t) < 0.02; });
     if (!near) inner.insert(inner.end(), static_cast<std::size_t>(times), t);
   }
   std::sort(inner.begin(), inner.end());
@@ -81,7 +83,8 @@ BsplineSurface random_surface(Random& random, const SplineOptions& o) {
         continue;
       }
       const double x = greville(s.knots_u, o.degree_u, i), y = greville(s.knots_v, o.degree_v, j);
-      const double angle = 2 * 3.14159265358979323846 * i / distinct_u, radius = 0.7 + random.between(-0.1, 0.1);
+      const double angle = 2 * 3.14159265358979323846 * i / distinct_u,
+                   radius = 0.7 + random.between(-0.1, 0.1);
       const Vec3 p = o.periodic_u ? Vec3{radius * std::cos(angle), radius * std::sin(angle), 2 * y - 1}
                                   : Vec3{2 * x - 1, 2 * y - 1, random.between(-0.2, 0.2)};
       s.poles.push_back(o.origin + p);
@@ -90,12 +93,14 @@ BsplineSurface random_surface(Random& random, const SplineOptions& o) {
   return s;
 }
 
-Bspline3 random_curve(Random& random, int degree, int extra, bool rational, bool periodic, const Vec3& origin) {
+Bspline3 random_curve(Random& random, int degree, int extra, bool rational, bool periodic,
+                      const Vec3& origin) {
   Bspline3 c;
   c.degree = degree;
   c.periodic = periodic;
   c.knots = periodic ? periodic_knots(random, degree, extra) : random_knots(random, degree, extra, false);
-  const int count = static_cast<int>(c.knots.size()) - degree - 1, distinct = periodic ? count - degree : count;
+  const int count = static_cast<int>(c.knots.size()) - degree - 1,
+            distinct = periodic ? count - degree : count;
   for (int i = 0; i < count; ++i) {
     c.poles.push_back(i < distinct ? origin + random.point(1) : c.poles[i - distinct]);
     if (rational) c.weights.push_back(i < distinct ? random.between(0.6, 1.6) : c.weights[i - distinct]);

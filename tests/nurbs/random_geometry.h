@@ -16,7 +16,9 @@ class Random {
   double between(double lo, double hi) {
     return lo + (hi - lo) * (static_cast<double>(next() >> 11) * 0x1p-53);
   }
-  int integer(int lo, int hi) { return lo + static_cast<int>(next() % static_cast<std::uint64_t>(hi - lo + 1)); }
+  int integer(int lo, int hi) {
+    return lo + static_cast<int>(next() % static_cast<std::uint64_t>(hi - lo + 1));
+  }
   Vec3 point(double size) { return {between(-size, size), between(-size, size), between(-size, size)}; }
   Vec3 direction();
   Frame3 frame(bool left_handed = false);
@@ -41,7 +43,8 @@ std::vector<double> periodic_knots(Random& random, int degree, int extra);
 
 /// Over a bumpy height field of extent 2, so that the partials are never close to parallel.
 BsplineSurface random_surface(Random& random, const SplineOptions& options);
-Bspline3 random_curve(Random& random, int degree, int extra, bool rational, bool periodic, const Vec3& origin = {});
+Bspline3 random_curve(Random& random, int degree, int extra, bool rational, bool periodic,
+                      const Vec3& origin = {});
 Bspline2 random_plane_curve(Random& random, int degree, int extra, bool rational);
 
 /// A parameter of [lo, hi] at least 1e-6 from every knot.

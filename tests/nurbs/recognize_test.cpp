@@ -1,4 +1,5 @@
-// Recognition: what is a quadric, torus or revolution is found, the certificate holds, and nothing else is taken for one.
+// Recognition: what is a quadric, torus or revolution is found, the certificate holds, and nothing else is
+// taken for one.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -55,7 +56,8 @@ void expect_certified(const Surface& original, const Box2& region, const Recogni
       const Vec3 n = cross(jet.pu, jet.pv);
       if (i % kGrid == 0 || j % kGrid == 0 || length(n) < 1e-9) continue;  // collapsed edges
       EXPECT_GT(dot(n, cross(there.pu, there.pv)), 0);
-      EXPECT_LE(length(cross(normalized(n), normalized(cross(there.pu, there.pv)))), found.normal_deviation + 1e-14);
+      EXPECT_LE(length(cross(normalized(n), normalized(cross(there.pu, there.pv)))),
+                found.normal_deviation + 1e-14);
     }
 }
 
@@ -83,7 +85,9 @@ TEST(Recognize, FindsWhatASplineIs) {
       ASSERT_TRUE(found);
       EXPECT_EQ(kind_name(found->surface), kind_name(sample.surface));
       // Near the tip, and for a thin torus, less than rounding cannot be certified.
-      EXPECT_LE(found->deviation, sample.name == "cone's tip" ? 1e-7 : sample.name == "fillet" ? 2e-9 : 1e-11);
+      EXPECT_LE(found->deviation, sample.name == "cone's tip" ? 1e-7
+                                  : sample.name == "fillet"   ? 2e-9
+                                                              : 1e-11);
       EXPECT_LE(found->normal_deviation, 1e-6);
       expect_certified(spline, kUnit, *found);
     }
@@ -108,15 +112,17 @@ TEST(Recognize, DoesNotDependOnSizeOrPlace) {
 TEST(Recognize, SeesThroughSweeps) {
   Random random(3);
   const Frame3 f = random.frame();
-  const Curve3 circle{CircleOf<Vec3>{f.origin + f.x * 3.0, f.x, f.z, 0.5}}, line{LineOf<Vec3>{f.origin + f.x * 2.0, normalized(f.z + f.x * 0.3)}};
+  const Curve3 circle{CircleOf<Vec3>{f.origin + f.x * 3.0, f.x, f.z, 0.5}},
+      line{LineOf<Vec3>{f.origin + f.x * 2.0, normalized(f.z + f.x * 0.3)}};
   const Curve3 own{CircleOf<Vec3>{f.origin, f.x, f.z, 0.5}}, upright{LineOf<Vec3>{f.origin + f.x * 2.0, f.z}};
   const Box2 region{{0.2, -1}, {4, 1.2}};
-  const std::vector<std::pair<Surface, std::string>> cases = {{{Revolution{f.origin, f.z, circle}}, "torus"},
-                                                              {{Revolution{f.origin, f.z, line}}, "cone"},
-                                                              {{Revolution{f.origin, f.z, upright}}, "cylinder"},
-                                                              {{Revolution{f.origin, f.z, own}}, "sphere"},
-                                                              {{Extrusion{circle, f.y}}, "cylinder"},
-                                                              {{Extrusion{line, f.y}}, "plane"}};
+  const std::vector<std::pair<Surface, std::string>> cases = {
+      {{Revolution{f.origin, f.z, circle}}, "torus"},
+      {{Revolution{f.origin, f.z, line}}, "cone"},
+      {{Revolution{f.origin, f.z, upright}}, "cylinder"},
+      {{Revolution{f.origin, f.z, own}}, "sphere"},
+      {{Extrusion{circle, f.y}}, "cylinder"},
+      {{Extrusion{line, f.y}}, "plane"}};
   for (const auto& [surface, kind] : cases) {
     const auto found = recognize(surface, region, 1e-7);
     ASSERT_TRUE(found) << kind;
@@ -136,11 +142,12 @@ TEST(Recognize, CertifiesAnApproximation) {
   s.knots_v = {0, 0, 1, 1};
   for (const Vec2 p : {Vec2{1, 0}, Vec2{1, k}, Vec2{k, 1}, Vec2{0, 1}})
     for (const double z : {0.0, 2.0}) s.poles.push_back({p.x, p.y, z});
-  EXPECT_FALSE(recognize({s}, kUnit, 1e-4));   // the best fit is off by half of that
-  EXPECT_FALSE(recognize({s}, kUnit, 1e-3));   // and its normals by 1e-3
+  EXPECT_FALSE(recognize({s}, kUnit, 1e-4));  // the best fit is off by half of that
+  EXPECT_FALSE(recognize({s}, kUnit, 1e-3));  // and its normals by 1e-3
   // Poles with 8 digits.
   Random random(4);
-  BsplineSurface rounded = as_spline(bezier_patches({Torus{random.frame(), 3, 1}}, {{0, 0}, {1.5, 1.2}}).front());
+  BsplineSurface rounded =
+      as_spline(bezier_patches({Torus{random.frame(), 3, 1}}, {{0, 0}, {1.5, 1.2}}).front());
   for (Vec3& p : rounded.poles) p += random.point(1e-8);
   const auto found = recognize({rounded}, kUnit, 1e-7);
   ASSERT_TRUE(found);
@@ -173,7 +180,8 @@ BsplineSurface lathed(const Frame3& f, double angle, bool angle_in_v) {
   const double rho[] = {1, 1.3, 0.8, 0.9, 1.6}, z[] = {0, 0.4, 1, 1.5, 2.1};
   for (int i = 0; i < 5; ++i) profile.poles.push_back(f.to_world({rho[i], 0, z[i]}));
   // Of the exact revolution take one arc's poles by columns of the whole profile.
-  const Vec3 middle[3] = {{1, 0, 0}, {std::cos(angle / 2), std::sin(angle / 2), 0}, {std::cos(angle), std::sin(angle), 0}};
+  const Vec3 middle[3] = {
+      {1, 0, 0}, {std::cos(angle / 2), std::sin(angle / 2), 0}, {std::cos(angle), std::sin(angle), 0}};
   const double weight[3] = {1, std::cos(angle / 2), 1};
   BsplineSurface s;
   s.degree_u = angle_in_v ? 3 : 2;
@@ -233,14 +241,20 @@ TEST(Recognize, LeavesOtherShapesAlone) {
   const Frame3 f = random.frame();
   const Curve3 ellipse{EllipseOf<Vec3>{f.origin, f.x, f.y, 1, 0.9}};
   EXPECT_FALSE(recognize({Extrusion{ellipse, f.z}}, {{0, 0}, {3, 1}}, 1e-6));
-  for (const Sample& sample : testing::analytic_samples()) EXPECT_FALSE(recognize(sample.surface, sample.region, 1e-6));
+  for (const Sample& sample : testing::analytic_samples())
+    EXPECT_FALSE(recognize(sample.surface, sample.region, 1e-6));
 }
 
 TEST(Recognize, OffsetsOfAnalyticSurfacesExactly) {
   Random random(7);
   for (const bool left_handed : {false, true}) {
     const Frame3 f = random.frame(left_handed);
-    for (const Surface& base : std::vector<Surface>{{Plane{f}}, {Cylinder{f, 1}}, {Cone{f, 1.5, 0.4}}, {Cone{f, 1.5, -0.4}}, {Sphere{f, 1}}, {Torus{f, 3, 1}}})
+    for (const Surface& base : std::vector<Surface>{{Plane{f}},
+                                                    {Cylinder{f, 1}},
+                                                    {Cone{f, 1.5, 0.4}},
+                                                    {Cone{f, 1.5, -0.4}},
+                                                    {Sphere{f, 1}},
+                                                    {Torus{f, 3, 1}}})
       for (const double d : {-0.3, 0.4}) {
         const Surface offset{OffsetSurface{std::make_shared<const Surface>(base), d}};
         const auto found = recognize(offset, {{0, -1}, {3, 1}}, 1e-7);

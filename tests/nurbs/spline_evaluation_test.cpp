@@ -32,7 +32,8 @@ Scale scale_of(const BsplineSurface& s) {
 
 void expect_within_error(const SurfaceJet& got, const SurfaceJet& want, const Scale& scale) {
   const Vec3 g[] = {got.p, got.pu, got.pv, got.puu, got.puv, got.pvv, got.puuu, got.puuv, got.puvv, got.pvvv};
-  const Vec3 w[] = {want.p, want.pu, want.pv, want.puu, want.puv, want.pvv, want.puuu, want.puuv, want.puvv, want.pvvv};
+  const Vec3 w[] = {want.p,   want.pu,   want.pv,   want.puu,  want.puv,
+                    want.pvv, want.puuu, want.puuv, want.puvv, want.pvvv};
   for (int n = 0, k = 0; n <= 3; ++n)
     for (int j = 0; j <= n; ++j, ++k) {
       const double size = scale.extent * std::pow(scale.rate_u, n - j) * std::pow(scale.rate_v, j);
@@ -52,33 +53,41 @@ TEST(SplineSurface, AgreesWithTheDefinitionForEveryDegree) {
     for (const bool rational : {false, true}) {
       SCOPED_TRACE("degree " + std::to_string(degree) + (rational ? ", rational" : ""));
       Random random(static_cast<std::uint64_t>(degree * 2 + rational));
-      const BsplineSurface s = testing::random_surface(
-          random, {.degree_u = degree, .degree_v = 1 + (degree + 4) % 11, .extra_u = 2, .extra_v = 1, .rational = rational});
+      const BsplineSurface s = testing::random_surface(random, {.degree_u = degree,
+                                                                .degree_v = 1 + (degree + 4) % 11,
+                                                                .extra_u = 2,
+                                                                .extra_v = 1,
+                                                                .rational = rational});
       for (int i = 0; i < 8; ++i)
-        compare_with_oracle(s, testing::off_knots(random, s.knots_u, 0, 1), testing::off_knots(random, s.knots_v, 0, 1));
+        compare_with_oracle(s, testing::off_knots(random, s.knots_u, 0, 1),
+                            testing::off_knots(random, s.knots_v, 0, 1));
     }
 }
 
 TEST(SplineSurface, AgreesAtRepeatedKnotsFromTheRightAndAtTheEnds) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     Random random(seed);
-    const BsplineSurface s = testing::random_surface(
-        random, {.degree_u = 3, .degree_v = 2, .extra_u = 4, .extra_v = 3, .rational = seed % 2 == 0, .repeat_knots = true});
-    for (int i = 0; i < 3; ++i)
-      compare_with_oracle(s, s.knots_u[3 + i], s.knots_v[2 + i % 2], Side::forward);
+    const BsplineSurface s = testing::random_surface(random, {.degree_u = 3,
+                                                              .degree_v = 2,
+                                                              .extra_u = 4,
+                                                              .extra_v = 3,
+                                                              .rational = seed % 2 == 0,
+                                                              .repeat_knots = true});
+    for (int i = 0; i < 3; ++i) compare_with_oracle(s, s.knots_u[3 + i], s.knots_v[2 + i % 2], Side::forward);
     compare_with_oracle(s, 1, 1, Side::backward);
   }
 }
 
 TEST(SplineSurface, WrapsIntoThePeriodAndClampsOtherwise) {
   Random random(7);
-  const BsplineSurface s =
-      testing::random_surface(random, {.degree_u = 3, .degree_v = 2, .extra_u = 3, .rational = true, .periodic_u = true});
+  const BsplineSurface s = testing::random_surface(
+      random, {.degree_u = 3, .degree_v = 2, .extra_u = 3, .rational = true, .periodic_u = true});
   const Surface surface{s};
   EXPECT_EQ(period_u(surface), 1);
   EXPECT_EQ(period_v(surface), 0);
   for (int i = 0; i < 3; ++i) {
-    const double u = testing::off_knots(random, s.knots_u, 0, 1), v = testing::off_knots(random, s.knots_v, 0, 1);
+    const double u = testing::off_knots(random, s.knots_u, 0, 1),
+                 v = testing::off_knots(random, s.knots_v, 0, 1);
     compare_with_oracle(s, u, v);
     EXPECT_LE(distance(point_at(surface, u + 2, v), point_at(surface, u, v)), 1e-13);
     EXPECT_LE(distance(point_at(surface, u - 1, v), point_at(surface, u, v)), 1e-13);
@@ -93,10 +102,15 @@ TEST(SplineSurface, WrapsIntoThePeriodAndClampsOtherwise) {
 TEST(SplineSurface, KeepsItsDerivativesFarFromTheOrigin) {
   for (const bool rational : {false, true}) {
     Random random(11);
-    const BsplineSurface s = testing::random_surface(
-        random, {.degree_u = 3, .degree_v = 4, .extra_u = 2, .extra_v = 2, .rational = rational, .origin = {1e6, -1e6, 3e5}});
+    const BsplineSurface s = testing::random_surface(random, {.degree_u = 3,
+                                                              .degree_v = 4,
+                                                              .extra_u = 2,
+                                                              .extra_v = 2,
+                                                              .rational = rational,
+                                                              .origin = {1e6, -1e6, 3e5}});
     for (int i = 0; i < 3; ++i)
-      compare_with_oracle(s, testing::off_knots(random, s.knots_u, 0, 1), testing::off_knots(random, s.knots_v, 0, 1));
+      compare_with_oracle(s, testing::off_knots(random, s.knots_u, 0, 1),
+                          testing::off_knots(random, s.knots_v, 0, 1));
   }
 }
 
