@@ -47,13 +47,13 @@ bool is_smooth(const Part& part, const Edge& edge, const Use& a, const Use& b) {
   return true;
 }
 
-// Gauss–Legendre, 6 points on [0, 1].
-constexpr double kNodes[6] = {0.033765242898423975, 0.16939530676686776, 0.38069040695840156,
-                              0.61930959304159844, 0.83060469323313224, 0.96623475710157603};
-constexpr double kWeights[6] = {0.085662246189585173, 0.18038078652406930, 0.23395696728634552,
-                                0.23395696728634552, 0.18038078652406930, 0.085662246189585173};
+// Gauss–Legendre on [0, 1]: over an eighth of a turn, or a cubic span, three points leave less than a millionth, and only the
+// volume's sign is asked for.
+constexpr int kPoints = 3;
+constexpr double kNodes[kPoints] = {0.11270166537925831, 0.5, 0.88729833462074169};
+constexpr double kWeights[kPoints] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 
-// Where to split [a, b] so that six points a piece are enough: at the surface's knots, or every 45°.
+// Where to split [a, b] so that three points a piece are enough: at the surface's knots, or every 45°.
 std::vector<double> stops(const Surface& surface, bool along_u, double a, double b) {
   std::vector<double> result{a};
   const double lo = std::min(a, b), hi = std::max(a, b);
@@ -99,7 +99,7 @@ class FaceVolume {
     const std::vector<double> at = stops(surface_, true, face_.uv_box.lo.x, u);
     double sum = 0;
     for (std::size_t i = 0; i + 1 < at.size(); ++i)
-      for (int k = 0; k < 6; ++k) {
+      for (int k = 0; k < kPoints; ++k) {
         const double h = at[i + 1] - at[i];
         sum += h * kWeights[k] * density(at[i] + h * kNodes[k], v);
       }
@@ -110,7 +110,7 @@ class FaceVolume {
     const std::vector<double> at = stops(surface_, false, v0, v1);
     double sum = 0;
     for (std::size_t i = 0; i + 1 < at.size(); ++i)
-      for (int k = 0; k < 6; ++k) {
+      for (int k = 0; k < kPoints; ++k) {
         const double h = at[i + 1] - at[i];
         sum += h * kWeights[k] * inner(u, at[i] + h * kNodes[k]);
       }
@@ -131,7 +131,7 @@ class FaceVolume {
     double sum = 0;
     for (std::size_t i = 0; i + 1 < at.size(); ++i)
       for (int p = 0; p < pieces; ++p)
-        for (int k = 0; k < 6; ++k) {
+        for (int k = 0; k < kPoints; ++k) {
           const double h = (at[i + 1] - at[i]) / pieces, t = at[i] + h * (p + kNodes[k]);
           const CurveJet<Vec2> q = evaluate(trim.pcurve, t, 1);
           sum += h * kWeights[k] * q[1].y * inner(q[0].x, q[0].y);
