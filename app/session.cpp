@@ -30,7 +30,7 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
       ->type_name("BYTES")
       ->group(group);
   command.add_flag("--strict", options.strict,
-                   "Exit code 4 for any face that cannot be drawn, degenerate ones and `info` included")
+                   "Exit code 4 for any face that cannot be drawn, from `info` too (`render` has it always)")
       ->group(group);
   command.add_option("--units", options.units, "The unit of files that name none")
       ->check(CLI::IsMember({"um", "mm", "cm", "m", "inch", "ft"}))
