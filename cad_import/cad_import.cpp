@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "../core/parallel.h"
+#include "../nurbs/recognize.h"
 #include "file_kind.h"
 #include "model_stream.h"
 #include "reader_process.h"
@@ -79,6 +80,8 @@ Result<Model> import_cad(const std::string& path, const ImportOptions& options) 
   if (!answer.ok()) return answer.status();
   Result<Model> model = read_model(*answer);
   if (!model.ok()) return {StatusCode::unreadable, path + ": " + model.status().message};
+  // Splines that are something simpler are drawn as that; what the file says stays in the Model.
+  recognize_faces(*model);
   return model;
 }
 

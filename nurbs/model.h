@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,8 +49,17 @@ struct Trim {
 /// Closed; the face lies to the left in the parameter plane (for a right-handed u, v).
 using Loop = std::vector<Trim>;
 
+/// The simpler surface that a face's spline is (recognize.h), and how far off it is, certified.
+struct RecognizedSurface {
+  Surface surface;
+  double deviation = 0;         ///< model units
+  double normal_deviation = 0;  ///< radians
+};
+
 struct Face {
   std::uint32_t surface = 0;
+  /// Set by `recognize_faces`. Parameters, trims and `uv_box` stay those of `surface`. Shared between copies: never changed.
+  std::shared_ptr<const RecognizedSurface> recognized;
   bool reversed = false;    ///< the outward normal is -(Su × Sv)
   std::vector<Loop> loops;  ///< empty: bounded by `uv_box` alone (a whole sphere or torus, a natural patch)
   Box2 uv_box;              ///< contains the loops; finite

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "../core/parallel.h"
+#include "../nurbs/invert.h"
 #include "boundary.h"
 #include "patch_faces.h"
 #include "quadric_faces.h"
@@ -54,6 +55,42 @@ bool inside_with_period(const FaceBoundary& boundary, Vec2 uv) {
   return false;
 }
 
+/// A recognised surface's parameters for a region of the spline that it was recognised in, by a grid of points.
+class Recast {
+ public:
+  Recast(const Surface& spline, const Surface& recognized, const Box2& uv_box) {
+    constexpr int kSteps = 16;
+    for (int i = 0; i <= kSteps; ++i)
+      for (int j = 0; j <= kSteps; ++j) {
+        const Vec2 uv{uv_box.lo.x + uv_box.size().x * i / kSteps, uv_box.lo.y + uv_box.size().y * j / kSteps};
+        const Vec3 p = point_at(spline, uv.x, uv.y);
+        points_.push_back({p, uv});
+        // The region's middle lies at u = π, opposite the seam.
+        if (const auto q = invert(recognized, p, {kTwoPi / 2, 0})) box_.add(*q);
+      }
+    // Between the grid's points the region may reach a little farther; a whole turn's first and last points are the same angle.
+    const Vec2 margin = box_.size() * (1.0 / kSteps);
+    box_ = {box_.lo - margin, box_.hi + margin};
+    if (std::holds_alternative<Plane>(recognized.geometry)) return;
+    const bool whole = box_.size().x > 0.85 * kTwoPi;
+    box_.lo.x = whole ? 0 : std::max(box_.lo.x, 0.0), box_.hi.x = whole ? kTwoPi : std::min(box_.hi.x, kTwoPi);
+    if (std::holds_alternative<Sphere>(recognized.geometry))
+      box_.lo.y = std::max(box_.lo.y, -kTwoPi / 4), box_.hi.y = std::min(box_.hi.y, kTwoPi / 4);
+  }
+  const Box2& box() const { return box_; }
+  Vec2 nearest_parameters(const Vec3& p) const {
+    double least = 1e300;
+    Vec2 best{};
+    for (const auto& [q, uv] : points_)
+      if (const double d = dot(q - p, q - p); d < least) least = d, best = uv;
+    return best;
+  }
+
+ private:
+  std::vector<std::pair<Vec3, Vec2>> points_;
+  Box2 box_;
+};
+
 class PartSampler {
  public:
   PartSampler(const Model& model, std::uint32_t part, const SamplingOptions& options)
@@ -66,12 +103,33 @@ class PartSampler {
     const Surface& surface = part_.surfaces[face.surface];
     if (is_quadric(surface)) return sample_quadric(index, face, surface, out);
     const FaceBoundary boundary = face_boundary(part_, face, chains_, true);
+    if (face.recognized && is_quadric(face.recognized->surface)) return sample_recognized(index, face, boundary, out);
     const PatchFaceInput in{part_, face, index, boundary, field_, options_.normal_tolerance};
     const PatchFaceResult result = make_patch_face(in, out.dps);
     if (!result.rational && !result.defined) out.failure = "its " + std::string(kind_name(surface)) + " surface is not defined everywhere";
   }
 
  private:
+  /// A spline that is a quadric: its DPs are the quadric, its trims come from their curves in space, and whether a point is inside
+  /// is asked of the spline's own parameters.
+  void sample_recognized(std::uint32_t index, const Face& face, const FaceBoundary& boundary, FaceDps& out) const {
+    const RecognizedSurface& recognized = *face.recognized;
+    const Surface& spline = part_.surfaces[face.surface];
+    const Recast recast(spline, recognized.surface, boundary.uv_box);
+    auto inside = [&](const Vec3& p) {
+      const auto uv = invert(spline, p, recast.nearest_parameters(p));
+      return uv && uv_inside(boundary, *uv);
+    };
+    const QuadricFaceInput in{part_, face, index, recognized.surface, boundary, recast.box(), {}, inside, !face.reversed};
+    if (std::holds_alternative<Plane>(recognized.surface.geometry)) make_plane_face(in, out.dps);
+    else make_curved_quadric_face(in, out.dps);
+    for (QuadricDp& dp : out.dps.dps) {
+      dp.bound = std::hypot(dp.bound, recognized.deviation);
+      dp.normal_bound = recognized.normal_deviation;
+      dp.cell = boundary.uv_box;
+    }
+  }
+
   void sample_quadric(std::uint32_t index, const Face& face, const Surface& surface, FaceDps& out) const {
     const bool plane = std::holds_alternative<Plane>(surface.geometry);
     const FaceBoundary boundary = face_boundary(part_, face, chains_, !plane);

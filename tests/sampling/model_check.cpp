@@ -5,6 +5,7 @@
 #include <random>
 
 #include "../../core/parallel.h"
+#include "../../nurbs/invert.h"
 
 namespace dupin::test {
 namespace {
@@ -171,7 +172,11 @@ void check_bounds(const Part& part, const PartDps& dps, const Outline& outline, 
           ++report.unresolved;
           continue;
         }
-        const SurfaceJet jet = evaluate(surface, uv.x, uv.y, 1);
+        // A recognised spline's certificate is nurbs' own (recognize_test): here the quadric is held against what was recognised.
+        const bool recognized = face.recognized && is_quadric(face.recognized->surface);
+        const Surface& drawn_surface = recognized ? face.recognized->surface : surface;
+        const auto there = recognized ? invert(drawn_surface, p, {3.14159265358979, 0}) : std::optional<Vec2>(uv);
+        const SurfaceJet jet = evaluate(drawn_surface, there->x, there->y, 1);
         // At its border a face may reach over what the file's own edges are off (QuadricDp::bound).
         const double reach = inside_polygons(outline, uv) ? 0 : edge_reach;
         report.worst_position = std::max(report.worst_position, (distance(p, jet.p) - rounding - reach) / (dp.bound + rounding));
