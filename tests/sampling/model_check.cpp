@@ -215,8 +215,12 @@ std::vector<FaceReport> check_scene(const Model& model, const DpScene& scene, co
       report.kind = kind_name(part.surfaces[part.faces[f].surface]);
       report.dps = static_cast<int>(mine[f].size());
       const Outline outline = outline_of(part, part.faces[f]);
-      check_coverage(part, scene.parts[p], outline, mine[f], options, report);
-      check_bounds(part, scene.parts[p], outline, mine[f], options, report);
+      // Nearer to an edge than it is wrong by its own account nothing can be said.
+      CheckOptions mine_options = options;
+      for (const Loop& loop : part.faces[f].loops)
+        for (const Trim& trim : loop) mine_options.margin = std::max(mine_options.margin, options.margin + part.edges[trim.edge].tolerance);
+      check_coverage(part, scene.parts[p], outline, mine[f], mine_options, report);
+      check_bounds(part, scene.parts[p], outline, mine[f], mine_options, report);
     });
   }
   return reports;
