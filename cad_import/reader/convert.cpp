@@ -52,6 +52,7 @@ class Conversion {
       add_item(document_.items[i]);
     }
     finish_skipped();
+    if (free_curves_ > 0) model_.notes.push_back(std::to_string(free_curves_) + " curves that bound no face are not drawn");
     if (mesh_.deflection > 0) add_meshes();
     return std::move(model_);
   }
@@ -68,6 +69,7 @@ class Conversion {
   };
 
   void add_item(const SourceItem& item) {
+    for (TopExp_Explorer e(item.shape, TopAbs_EDGE, TopAbs_FACE); e.More(); e.Next()) ++free_curves_;
     const std::vector<Piece> pieces = pieces_of(item.shape);
     for (const Piece& piece : pieces) {
       const std::uint32_t part = part_of(item, piece);
@@ -145,6 +147,7 @@ class Conversion {
   const MeshOptions& mesh_;
   const Stage& stage_;
   Model model_;
+  int free_curves_ = 0;
   std::vector<Built> built_;
   std::map<std::tuple<const void*, int, bool>, std::vector<Known>> known_;
 };

@@ -15,8 +15,8 @@ Result<SourceDocument> read_kind(FileKind kind, const std::string& path, const R
   switch (kind) {
     case FileKind::step: return read_step(path, stage);
     case FileKind::iges: return read_iges(path, stage);
-    case FileKind::brep_text: return read_brep(path, false, options, stage);
-    case FileKind::brep_binary: return read_brep(path, true, options, stage);
+    case FileKind::brep_text:
+    case FileKind::brep_binary: return read_brep(path, options, stage);
     case FileKind::zip: return read_fcstd(path, stage);
     case FileKind::empty: return {StatusCode::unreadable, "the file is empty"};
     default: return {StatusCode::unreadable, "not a STEP, IGES, BREP or FCStd file"};
@@ -43,7 +43,8 @@ Result<Model> import_shapes(const ImportRequest& request, const Stage& stage) {
   Model model = convert(*document, request.mesh, stage);
   model.source = std::filesystem::path(request.path).filename().string();
   if (model.instances.empty() && model.skipped.empty())
-    return {StatusCode::unreadable, "the file holds no faces"};
+    return {StatusCode::unreadable, model.notes.empty() ? "the file holds no faces"
+                                                        : "the file holds no faces: " + model.notes.front()};
   return model;
 }
 

@@ -1,15 +1,11 @@
-#include <BRepTools.hxx>
-#include <BRep_Builder.hxx>
-#include <BinTools.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 
 #include <set>
-#include <sstream>
 #include <unordered_map>
 
-#include "../file_kind.h"
+#include "brep_content.h"
 #include "fcstd_document.h"
 #include "read_files.h"
 #include "zip_archive.h"
@@ -150,11 +146,7 @@ class Reading {
     if (!bytes) return std::nullopt;
     TopoDS_Shape shape;
     if (!bytes->empty()) {
-      std::istringstream in(*bytes);
-      if (find_file_kind(std::span(*bytes).first(std::min<std::size_t>(bytes->size(), 256))) == FileKind::brep_binary)
-        BinTools::Read(shape, in);
-      else
-        BRepTools::Read(shape, in, BRep_Builder());
+      shape = read_brep_content(*bytes);
       if (shape.IsNull()) return std::nullopt;
     }
     shapes_.emplace(object.shape_file, shape);

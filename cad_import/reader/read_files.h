@@ -16,7 +16,7 @@ struct ReadOptions {
 Result<SourceDocument> read_step(const std::string& path, const Stage& stage);
 Result<SourceDocument> read_iges(const std::string& path, const Stage& stage);
 Result<SourceDocument> read_fcstd(const std::string& path, const Stage& stage);
-Result<SourceDocument> read_brep(const std::string& path, bool binary, const ReadOptions& options, const Stage& stage);
+Result<SourceDocument> read_brep(const std::string& path, const ReadOptions& options, const Stage& stage);
 
 }  // namespace dupin::reader
 

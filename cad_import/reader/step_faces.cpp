@@ -3,7 +3,9 @@
 #include <Interface_Check.hxx>
 #include <Interface_EntityIterator.hxx>
 #include <Interface_Graph.hxx>
+#include <Interface_UndefinedContent.hxx>
 #include <StepData_StepModel.hxx>
+#include <StepData_UndefinedEntity.hxx>
 #include <StepShape_FaceSurface.hxx>
 #include <TCollection_HAsciiString.hxx>
 #include <TransferBRep.hxx>
@@ -31,12 +33,29 @@ class LostFaces {
       else
         ++unused;
     }
+    report_triangles(document);
     if (unused > 0)
       document.notes.push_back(std::to_string(unused) + " faces of the file belong to no shape and are left out");
   }
 
  private:
   static constexpr int kLevelsUp = 4;  // face, shell, solid, representation
+
+  // AP242's faces that are triangles only; those that stand for an exact face link to it.
+  void report_triangles(SourceDocument& document) const {
+    constexpr int kLink = 5;  // name, coordinates, count, normals, link, …
+    std::uint32_t count = 0;
+    for (int i = 1; i <= model_->NbEntities(); ++i) {
+      const Handle(StepData_UndefinedEntity) entity = Handle(StepData_UndefinedEntity)::DownCast(model_->Value(i));
+      if (entity.IsNull()) continue;
+      const std::string_view type = entity->StepType();
+      if (type != "TRIANGULATED_FACE" && type != "COMPLEX_TRIANGULATED_FACE") continue;
+      const Handle(Interface_UndefinedContent) content = entity->UndefinedContent();
+      if (content->NbParams() < kLink || !content->IsParamEntity(kLink)) ++count;
+    }
+    if (count > 0)
+      document.skipped.push_back({"faces of triangles", "the file has them as triangles only, without their surfaces", count});
+  }
 
   bool has_shape(const Handle(Standard_Transient) & entity) const {
     const Handle(Transfer_Binder) binder = process_->Find(entity);
