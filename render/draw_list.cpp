@@ -39,6 +39,16 @@ std::array<Plane3, 4> side_planes(const ViewRays& view) {
   return planes;
 }
 
+/// Clip X and Y as functions of a point in model space.
+std::array<Plane3, 2> clip_rows(const ViewRays& view) {
+  const Vec3 offset = view.perspective ? view.forward : Vec3{};
+  const auto row = [&](const Vec3& axis, double s, double o) {
+    const Vec3 n = (axis - offset * o) / s;
+    return Plane3{n, -dot(n, view.eye) - (view.perspective ? 0 : o / s)};
+  };
+  return {row(view.right, view.sx, view.ox), row(view.up, view.sy, view.oy)};
+}
+
 void depth_range(const Scene::Impl& scene, const ViewRays& view, DrawList& list) {
   double lo = std::numeric_limits<double>::infinity(), hi = -lo;
   for (int i = 0; i < 8 && !scene.box.empty(); ++i) {
@@ -105,7 +115,8 @@ InstanceTexels instance_texels(const SceneInstance& instance, const ScenePart& p
 /// A placement's camera for culling, in the part's space relative to the anchor.
 struct PartCamera {
   std::array<Plane3, 4> sides;
-  Plane3 depth;  ///< its value is the depth
+  Plane3 depth;                ///< its value is the depth
+  std::array<Plane3, 2> rows;  ///< their values are clip coordinates X and Y
   Vec3 eye;      ///< or, in parallel, the direction towards the viewer
   bool perspective;
   bool cull_turned_away;
@@ -125,6 +136,9 @@ PartCamera part_camera(const SceneInstance& instance, const ScenePart& part, con
   PartCamera camera;
   for (std::size_t i = 0; i < 4; ++i) camera.sides[i] = to_part(sides[i], instance, part.anchor, true);
   camera.depth = to_part({view.forward, -dot(view.forward, view.eye)}, instance, part.anchor, false);
+  const auto [row_x, row_y] = clip_rows(view);
+  const std::array<Plane3, 2> rows{row_x, row_y};
+  for (std::size_t k = 0; k < 2; ++k) camera.rows[k] = to_part(rows[k], instance, part.anchor, false);
   camera.perspective = view.perspective;
   const Vec3 eye = transform_point(instance.to_part, view.eye);
   camera.eye = view.perspective ? eye - part.anchor : -(instance.to_part.linear * view.forward);
@@ -132,6 +146,44 @@ PartCamera part_camera(const SceneInstance& instance, const ScenePart& part, con
   camera.cull_turned_away = part.closed && !(view.perspective && part.box.contains(eye));
   return camera;
 }
+
+/// Where on the picture a sphere may be seen.
+class Footprints {
+ public:
+  Footprints(const ViewRays& view, std::vector<std::array<int, 2>>& bands) : view_(view), bands_(bands) {
+    bands_.assign(static_cast<std::size_t>((view.height + kBandRows - 1) / kBandRows), {view.width, 0});
+  }
+  /// Picture coordinates of the centre, of their reach, or of everything where the sphere comes close to the eye.
+  void add(const PartCamera& camera, const Vec3& center, double radius) {
+    const double w = camera.perspective ? dot(camera.depth.n, center) + camera.depth.d : 1;
+    const double dw = camera.perspective ? radius * length(camera.depth.n) : 0;
+    if (w - dw < 0.05 * w) return add_pixels(0, view_.width, 0, view_.height);
+    std::array<double, 4> ends;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Plane3& row = camera.rows[k];
+      // |(X + δX)/(w + δw) − X/w| for changes of at most radius·|row| and δw.
+      const double at = (dot(row.n, center) + row.d) / w, reach = (radius * length(row.n) + std::abs(at) * dw) / (w - dw);
+      const int size = k == 0 ? view_.width : view_.height;
+      ends[2 * k] = (at - reach + 1) * size / 2;
+      ends[2 * k + 1] = (at + reach + 1) * size / 2;
+    }
+    add_pixels(ends[0] - 2, ends[1] + 2, ends[2] - 2, ends[3] + 2);
+  }
+
+ private:
+  void add_pixels(double x0, double x1, double y0, double y1) {
+    const auto whole = [](double v, int limit) { return static_cast<int>(std::clamp(v, 0.0, static_cast<double>(limit))); };
+    const int left = whole(x0, view_.width), right = whole(x1 + 1, view_.width);
+    const int first = whole(y0, view_.height) / kBandRows, last = std::min(whole(y1 + 1, view_.height), view_.height - 1) / kBandRows;
+    for (int b = first; b <= last; ++b) {
+      auto& band = bands_[static_cast<std::size_t>(b)];
+      band = {std::min(band[0], left), std::max(band[1], right)};
+    }
+  }
+
+  const ViewRays& view_;
+  std::vector<std::array<int, 2>>& bands_;
+};
 
 bool turned_away(const DpBounds& dp, const PartCamera& camera) {
   const Vec3 towards = camera.perspective ? camera.eye - dp.center : camera.eye;
@@ -159,6 +211,7 @@ bool out_of_view(const DpBounds& dp, const PartCamera& camera) {
 struct Candidate {
   std::uint64_t key;
   DrawItem item;
+  const DpBounds* dp;
 };
 
 std::uint64_t sort_key(std::uint32_t kind, float depth) {
@@ -169,11 +222,12 @@ std::uint64_t sort_key(std::uint32_t kind, float depth) {
 }
 
 void add_dps(const SceneInstance& instance, std::uint32_t index, const ScenePart& part, const PartCamera& camera,
-             std::vector<Candidate>& candidates) {
+             Footprints& footprints, std::vector<Candidate>& candidates) {
   const double depth_scale = length(camera.depth.n);
   for (std::size_t i = 0; i < part.dps.size(); ++i) {
     const DpBounds& dp = part.dps[i];
     if (out_of_view(dp, camera) || (camera.cull_turned_away && turned_away(dp, camera))) continue;
+    footprints.add(camera, dp.center, dp.radius);
     const double depth = dot(camera.depth.n, dp.center) + camera.depth.d;
     std::uint32_t kind = dp.kind;
     if (kind & kCurvedKind) {
@@ -182,7 +236,7 @@ void add_dps(const SceneInstance& instance, std::uint32_t index, const ScenePart
     }
     const std::uint32_t color = instance.face_colors.empty() ? instance.color : instance.face_colors[dp.color_face];
     candidates.push_back({sort_key(kind, static_cast<float>(depth)),
-                          {dp.record, index, instance.first_primitive + static_cast<std::uint32_t>(i) + 1, color}});
+                          {dp.record, index, instance.first_primitive + static_cast<std::uint32_t>(i) + 1, color}, &dp});
   }
 }
 
@@ -198,19 +252,24 @@ void build_draw_list(const Scene::Impl& scene, const ViewRays& view, DrawList& l
   list.instances.clear();
   list.items.clear();
   list.groups.clear();
+  list.inner.clear();
   list.runs.clear();
   depth_range(scene, view, list);
   const std::array<Plane3, 4> sides = side_planes(view);
+  Footprints footprints(view, list.bands);
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const SceneInstance& instance = scene.instances[i];
     const ScenePart& part = scene.parts[instance.part];
     const auto index = static_cast<std::uint32_t>(i);
     list.instances.push_back(instance_texels(instance, part, view, list.start_depth));
-    if (part.triangles)
+    if (part.triangles == 0 && part.dps.empty()) continue;
+    const PartCamera camera = part_camera(instance, part, view, sides);
+    if (part.triangles) {
       list.runs.push_back({index, part.first_triangle, part.triangles, instance.first_primitive});
-    if (!part.dps.empty())
-      add_dps(instance, index, part, part_camera(instance, part, view, sides), candidates);
+      footprints.add(camera, part.box.center() - part.anchor, part.box.diagonal() / 2);
+    }
+    add_dps(instance, index, part, camera, footprints, candidates);
   }
   // Equal keys keep the model's order, by the primitive's number: the same list whatever the sorting algorithm.
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
@@ -220,6 +279,10 @@ void build_draw_list(const Scene::Impl& scene, const ViewRays& view, DrawList& l
     const auto kind = static_cast<std::uint32_t>(c.key >> 32 & 0xffff);
     if (list.groups.empty() || list.groups.back().kind != kind) list.groups.push_back({kind, 0});
     ++list.groups.back().count;
+    for (const Box2& b : c.dp->inner) {
+      const auto f = [](double v) { return static_cast<float>(v); };
+      list.inner.push_back({{f(b.lo.x), f(b.lo.y), f(b.hi.x), f(b.hi.y)}, static_cast<std::uint32_t>(list.items.size()), {}});
+    }
     list.items.push_back(c.item);
   }
 }

@@ -21,6 +21,12 @@ struct DrawItem {
   std::uint32_t record, instance, primitive, color;
 };
 
+/// A rectangle of a planar DP's (x, y): two texels of planar.vert's `inner`.
+struct InnerRectangle {
+  std::array<float, 4> rectangle;  ///< x lo, y lo, x hi, y hi
+  std::uint32_t slot = 0, unused[3] = {};
+};
+
 struct TriangleRun {
   std::uint32_t instance, first_triangle, triangles, first_primitive;
 };
@@ -43,6 +49,9 @@ struct DrawList {
   std::vector<InstanceTexels> instances;
   std::vector<DrawItem> items;
   std::vector<DrawGroup> groups;  ///< planar ones first
+  std::vector<InnerRectangle> inner;
+  /// For each band of kBandRows rows from the top the columns [first, last) outside of which nothing is drawn.
+  std::vector<std::array<int, 2>> bands;
   std::vector<TriangleRun> runs;
   std::uint32_t primitives() const;
   double start_depth = 0;                ///< rays start here: in front of everything, and not behind the eye
@@ -54,6 +63,9 @@ struct DrawList {
   /// Between an empty pixel's value and that of anything drawn.
   float covered_depth() const { return static_cast<float>(0.5 * farthest_in_buffer); }
 };
+
+/// Rows of the picture that share one horizontal extent of what is seen in them.
+inline constexpr int kBandRows = 64;
 
 /// Resets `list` and fills it; keeps its memory.
 void build_draw_list(const Scene::Impl& scene, const ViewRays& view, DrawList& list);

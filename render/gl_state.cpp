@@ -82,6 +82,7 @@ void GlStateGuard::take_fixed_function() {
   gl_.GetIntegerv(GL_CULL_FACE_MODE, &cull_face_);
   gl_.GetIntegerv(GL_FRONT_FACE, &front_face_);
   gl_.GetIntegerv(GL_VIEWPORT, viewport_.data());
+  gl_.GetIntegerv(GL_SCISSOR_BOX, scissor_.data());
   for (std::size_t i = 0; i < blend_state_.size(); ++i) gl_.GetIntegerv(kBlendNames[i], &blend_state_[i]);
   gl_.GetDoublev(GL_DEPTH_RANGE, depth_range_.data());
   gl_.GetBooleanv(GL_DEPTH_WRITEMASK, &depth_mask_);
@@ -105,6 +106,7 @@ void GlStateGuard::neutral() const {
 }
 
 void GlStateGuard::use_host_output() const {
+  gl_.Scissor(scissor_[0], scissor_[1], scissor_[2], scissor_[3]);
   for (const int i : {kDepthTest, kScissor, kSrgb})
     (enabled_[static_cast<std::size_t>(i)] ? gl_.Enable : gl_.Disable)(kCapabilityNames[i]);
   gl_.DepthFunc(symbol(depth_func_));
@@ -155,6 +157,7 @@ void GlStateGuard::put_back_fixed_function() const {
   gl_.DepthFunc(symbol(depth_func_));
   gl_.CullFace(symbol(cull_face_));
   gl_.FrontFace(symbol(front_face_));
+  gl_.Scissor(scissor_[0], scissor_[1], scissor_[2], scissor_[3]);
   gl_.Viewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
   gl_.BlendFuncSeparate(symbol(blend_state_[0]), symbol(blend_state_[1]), symbol(blend_state_[2]),
                         symbol(blend_state_[3]));

@@ -52,7 +52,7 @@ class GlStateGuard {
   std::vector<std::array<GLboolean, 4>> color_mask_;
   std::array<GLint, 2> polygon_mode_{};
   GLint depth_func_ = 0, cull_face_ = 0, front_face_ = 0, clip_origin_ = 0, clip_depth_ = 0;
-  std::array<GLint, 4> viewport_{};
+  std::array<GLint, 4> viewport_{}, scissor_{};
   std::array<GLint, 6> blend_state_{};
   std::array<double, 2> depth_range_{};
   GLboolean depth_mask_ = GL_TRUE;

@@ -2,10 +2,15 @@
 
 #include <limits>
 
+#include "../core/parallel.h"
 #include "draw_list.h"
+#include "inner_rectangles.h"
 
 namespace dupin {
 namespace {
+
+/// With fewer boundary pieces a pixel is tested as fast as it is found not to need it.
+constexpr std::size_t kFewestPiecesForInner = 2;
 
 constexpr Color kDefaultColor{0.55F, 0.57F, 0.60F, 1};
 
@@ -66,6 +71,10 @@ Status pack_dps(const Part& source, const PartDps& dps, ScenePart& part, SceneIn
     drawn[dp.face] = true;
   }
   const std::vector<std::uint32_t> numbers = number_faces(source.faces.size(), drawn, part.drawn_faces);
+  std::vector<std::vector<Box2>> inner(dps.dps.size());
+  parallel_for(dps.dps.size(), [&](std::size_t i) {
+    if (dps.dps[i].planar && piece_count(dps.dps[i]) >= kFewestPiecesForInner) inner[i] = inner_rectangles(dps, dps.dps[i]);
+  }, 16);
   for (const QuadricDp& dp : dps.dps) {
     DpBounds bounds = dp_bounds(dps, dp, part.anchor);
     bounds.record = static_cast<std::uint32_t>(package.heap.size());
@@ -73,7 +82,8 @@ Status pack_dps(const Part& source, const PartDps& dps, ScenePart& part, SceneIn
     if (!status.ok()) return status;
     info.clips += piece_count(dp);
     for (const Vec3& c : corners(dp)) part.box.add(dp.origin + dp.u * c.x + dp.v * c.y + dp.n() * c.z);
-    part.dps.push_back(bounds);
+    bounds.inner = std::move(inner[part.dps.size()]);
+    part.dps.push_back(std::move(bounds));
   }
   info.primitives += dps.dps.size();
   return {};

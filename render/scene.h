@@ -20,6 +20,7 @@ struct DpBounds {
   std::uint32_t record = 0;
   std::uint32_t color_face = 0;  ///< index of its face in the part
   bool planar = false;
+  std::vector<Box2> inner;  ///< rectangles of its (x, y) that are inside as a whole; planar with pieces only
   std::uint32_t kind = 0;  ///< see draw_list.h; without what depends on the camera
 };
 DpBounds dp_bounds(const PartDps& part, const QuadricDp& dp, const Vec3& anchor);

@@ -156,7 +156,14 @@ Status Renderer::Impl::shade_with(const Pass& pass, bool mesh) {
     runs_.bind(kRunsUnit);
   }
   gl->Uniform1f(uniform("screen_depth"), list_.covered_depth());
-  gl->DrawArrays(GL_TRIANGLES, 0, 3);
+  gl->Enable(GL_SCISSOR_TEST);
+  for (std::size_t b = 0; b < list_.bands.size(); ++b) {
+    const auto [first, last] = list_.bands[b];
+    if (first >= last) continue;
+    gl->Scissor(first, static_cast<GLint>(b) * kBandRows, last - first, kBandRows);
+    gl->DrawArrays(GL_TRIANGLES, 0, 3);
+  }
+  gl->Disable(GL_SCISSOR_TEST);
   return {};
 }
 

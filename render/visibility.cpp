@@ -98,6 +98,22 @@ void Renderer::Impl::grow_indices(std::uint32_t dps) {
   indexed_dps_ = dps;
 }
 
+Status Renderer::Impl::draw_inner(const Pass& pass) {
+  if (list_.inner.empty()) return {};
+  const auto name = program("inner", {{"proxy.glsl", "inner.vert"}, {"inner.frag"}, {}, {}, {}});
+  if (!name) return name.status();
+  set_view(*name, pass.view);
+  // Edges are left to the pixels that walk along the boundary.
+  gl->Uniform1f(gl->GetUniformLocation(*name, "shrink"), static_cast<float>(pass.edges() ? pass.options->edge_width_px / 2 + 1 : 0.05));
+  inner_.assign(list_.inner.data(), list_.inner.size() * sizeof(InnerRectangle), GL_STREAM_DRAW);
+  inner_.bind(kInnerUnit);
+  const auto count = static_cast<std::uint32_t>(list_.inner.size());
+  grow_indices(count);
+  gl->BindVertexArray(quad_array_.name());
+  gl->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(6 * count), GL_UNSIGNED_INT, nullptr);
+  return {};
+}
+
 Status Renderer::Impl::draw_dps(const Pass& pass) {
   std::uint32_t first = 0;
   for (const DrawGroup& group : list_.groups) {
@@ -151,7 +167,8 @@ Status Renderer::Impl::draw_visibility(const Pass& pass) {
   const GLfloat farthest = 0;
   gl->ClearBufferuiv(GL_COLOR, 0, nothing);
   gl->ClearBufferfv(GL_DEPTH, 0, &farthest);
-  const Status dps = draw_dps(pass);
+  const Status inner = draw_inner(pass);
+  const Status dps = inner.ok() ? draw_dps(pass) : inner;
   return dps.ok() ? draw_triangles(pass) : dps;
 }
 

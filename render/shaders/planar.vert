@@ -55,15 +55,11 @@ void main() {
   rounding = widen;
 #endif
 
-  // Move the corner so far that both its sides move kGrow pixels on the screen: a side moved by m moves m |J| / |J side|.
+  // Both sides that meet in the corner are moved out by kGrow pixels.
   vec4 rx = slot_texel(slot, 8), ry = slot_texel(slot, 9), rf = slot_texel(slot, 10);
   vec2 c = corner_of(c01, c23, i), to = side_to(c01, c23, i), from = side_from(c01, c23, i);
-  vec3 at = vec3(c, 1.0);
-  vec2 clip = vec2(dot(rx.xyw, at), dot(ry.xyw, at));
-  float w = spread > 0.0 ? dot(rf.xyw, at) : 1.0, w2 = max(w * w, 1e-30);
-  vec2 ju = (vec2(rx.x, ry.x) * w - spread * clip * rf.x) / w2 * picture * 0.5;
-  vec2 jv = (vec2(rx.y, ry.y) * w - spread * clip * rf.y) / w2 * picture * 0.5;
-  float det = max(abs(cross2(ju, jv)), 1e-30);
+  vec2 ju, jv;
+  jacobian(c, rx, ry, rf, ju, jv);
   float extent = length(c23.xy - c01.xy) + length(c23.zw - c01.zw);
 #ifdef EDGES
   uint features = t0.w >> 8;
@@ -71,7 +67,10 @@ void main() {
                  (features & 4u) != 0u ? 0.0 : 1e30, (features & 8u) != 0u ? 0.0 : 1e30);
   ink = ink_for(max(length(ju * (c23.x - c01.x) + jv * (c23.y - c01.y)), length(ju * (c23.z - c01.z) + jv * (c23.w - c01.w))));
 #endif
-  vec2 m = kGrow * vec2(length(ju * to.x + jv * to.y), length(ju * from.x + jv * from.y)) / det;
-  at.xy += miter(to, from, min(m, vec2(extent)));
+  c += miter(to, from, min(kGrow * vec2(way_per_pixel(ju, jv, to), way_per_pixel(ju, jv, from)), vec2(extent)));
+  vec3 at = vec3(c, 1.0);
   gl_Position = to_clip(vec2(dot(rx.xyw, at), dot(ry.xyw, at)), dot(rf.xyw, at));
+#ifdef PIECES
+  gl_Position.z *= kBehind;
+#endif
 }

@@ -48,3 +48,20 @@ vec2 miter(vec2 to, vec2 from, vec2 m) {
   if (abs(c) < 0.1) return (n1 + n2) * max(m.x, m.y) + to * m.x - from * m.y;
   return (vec2(n2.y, -n2.x) * m.x + vec2(-n1.y, n1.x) * m.y) / c;
 }
+
+// How a point (x, y) of a DP's plane z = 0 moves on the picture, in pixels: columns for x and y.
+void jacobian(vec2 c, vec4 rx, vec4 ry, vec4 rf, out vec2 ju, out vec2 jv) {
+  vec3 at = vec3(c, 1.0);
+  vec2 clip = vec2(dot(rx.xyw, at), dot(ry.xyw, at));
+  float w = spread > 0.0 ? dot(rf.xyw, at) : 1.0, w2 = max(w * w, 1e-30);
+  ju = (vec2(rx.x, ry.x) * w - spread * clip * rf.x) / w2 * picture * 0.5;
+  jv = (vec2(rx.y, ry.y) * w - spread * clip * rf.y) / w2 * picture * 0.5;
+}
+
+// How far a side along the unit tangent is moved, in the plane, for it to move by a pixel on the picture: moved by m it moves m |J| / |J tangent|.
+float way_per_pixel(vec2 ju, vec2 jv, vec2 tangent) {
+  return length(ju * tangent.x + jv * tangent.y) / max(abs(cross2(ju, jv)), 1e-30);
+}
+
+// What is drawn again, more slowly, where a DP's inner rectangle has been drawn already lies by rounding behind it.
+const float kBehind = 1.0 - 4e-6;
