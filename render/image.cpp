@@ -71,6 +71,18 @@ Image to_image(const Frame& frame) {
   return image;
 }
 
+Image8 screen_image(const Frame& frame) {
+  Image8 image{frame.width, frame.height, 4, frame.screen};
+  const std::size_t pixels = image.values.size() / 4;
+  for (std::size_t i = 0; i < pixels; ++i)
+    if (image.values[4 * i + 3] != 255) return image;
+  for (std::size_t i = 0; i < pixels; ++i)
+    for (std::size_t k = 0; k < 3; ++k) image.values[3 * i + k] = image.values[4 * i + k];
+  image.values.resize(3 * pixels);
+  image.channels = 3;
+  return image;
+}
+
 Image8 to_image8(const Image& image) {
   const Image::Channel* const color[] = {image.find("R"), image.find("G"), image.find("B")};
   const Image::Channel* const alpha = image.find("A");

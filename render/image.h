@@ -40,6 +40,8 @@ struct Image8 {
   int width = 0, height = 0, channels = 0;
   std::vector<std::uint8_t> values;
 };
+/// What Output::kScreen asked for; without alpha where every pixel is opaque.
+Image8 screen_image(const Frame& frame);
 /// R, G, B and A encoded for a screen; without alpha where every pixel is opaque. Missing color channels are
 /// 0, a missing A is 1.
 Image8 to_image8(const Image& image);

@@ -55,6 +55,10 @@ void Renderer::Impl::read_frame(const ViewRays& view, const DrawOptions& options
     if (options.samples > 1)
       for (float& value : frame.color) value /= static_cast<float>(options.samples);
   }
+  if (wanted & kScreen) {
+    frame.screen.resize(pixels * 4);
+    read(kScreenPicture, GL_RGBA, GL_UNSIGNED_BYTE, frame.screen.data());
+  }
   std::vector<float> texels;
   if (pictures & 1U << kNormalDepthPicture) {
     texels.resize(pixels * 4);

@@ -9,6 +9,8 @@
 namespace dupin {
 namespace {
 
+constexpr int kMostHalfSamples = 16;
+
 using Clock = std::chrono::steady_clock;
 
 double milliseconds_since(Clock::time_point start) {
@@ -115,18 +117,25 @@ Result<std::unique_ptr<Scene>> Renderer::upload(const Model& model, const DpScen
   return std::make_unique<Scene>(std::move(scene));
 }
 
-/// Every sample's passes, the color picture holding their sum.
+/// Every sample's passes, the color picture holding their sum; a single sample goes to the screen picture at once where it can.
 Status Renderer::Impl::draw_samples(const Scene::Impl& scene, const ViewRays& view, const DrawOptions& options) {
-  const unsigned all = pictures_for(options.outputs), color = all & 1U << kColorPicture;
+  const bool floats = options.outputs & kColor, screen = options.outputs & kScreen;
+  const float alpha = options.background ? options.background->a : 0;
+  const bool at_once = screen && !floats && options.samples == 1 && (alpha == 0 || alpha == 1);
+  const unsigned others = pictures_for(options.outputs & ~(kColor | kScreen));
+  const unsigned color = at_once ? 1U << kScreenPicture : floats || screen ? 1U << kColorPicture : 0U;
+  // Half floats hold the sum of a few samples as well as 8 bits can show it.
+  const GLenum format = floats || options.samples > kMostHalfSamples ? GL_RGBA32F : GL_RGBA16F;
+  Status status = prepare_targets(view.width, view.height, others | color | (screen ? 1U << kScreenPicture : 0U), format);
   const bool together = options.samples == 1 || !color;
-  Status status = prepare_targets(view.width, view.height, all);
   for (int i = 0; i < options.samples && status.ok() && !together; ++i) {
     const Vec2 offset = sample_offset(i, options.samples);
     status = run({&scene, jittered(view, offset.x, offset.y), &options, color, options.samples, i == 0});
   }
   // The other pictures, and the numbers of what is seen, are the pixel centres'.
-  if (status.ok() && (together || all != color)) status = run({&scene, view, &options, together ? all : all & ~color, 1, true});
-  return status;
+  if (status.ok() && (together || others))
+    status = run({&scene, view, &options, together ? others | color : others, 1, true});
+  return status.ok() && screen && !at_once ? resolve(view, options.samples) : status;
 }
 
 Result<FrameStats> Renderer::draw_only(Scene& scene, const Camera& camera, const DrawOptions& options) {

@@ -52,6 +52,7 @@ enum Output : unsigned {
   kFace = 64,        ///< 1-based, over the drawn face instances in the model's order; 0: background
   kPrimitive = 128,  ///< 1-based
   kUv = 256,         ///< the surface's parameters
+  kScreen = 512,     ///< the colors in 8 bits, for a PNG: sRGB, straight alpha; costs least
 };
 
 struct DrawOptions {
@@ -78,6 +79,7 @@ struct Frame {
   int width = 0, height = 0;
   double pixel_constant = 0, pixel_per_depth = 0;  ///< see Image
   std::vector<float> color;                        ///< R G B A, linear, premultiplied by A
+  std::vector<std::uint8_t> screen;  ///< R G B A, sRGB, straight alpha
   std::vector<float> normal;                       ///< 3
   std::vector<float> depth;                        ///< 1
   std::vector<float> position;                     ///< 3

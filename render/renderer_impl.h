@@ -34,7 +34,8 @@ enum Unit {
 
 /// What the shading pass writes, a picture each.
 enum Picture {
-  kColorPicture,
+  kScreenPicture,  ///< 8 bits, sRGB
+  kColorPicture,   ///< float; the samples' sum
   kNormalDepthPicture,
   kCurvaturePicture,
   kDirectionPicture,
@@ -60,12 +61,15 @@ class Renderer::Impl {
     unsigned pictures = 0;
     int samples = 1;    ///< > 1: the color picture holds this many passes' sum
     bool first = true;  ///< of them
-    bool edges() const { return options->edges && (pictures & 1U << kColorPicture); }
+    bool color() const { return pictures & (1U << kColorPicture | 1U << kScreenPicture); }
+    bool edges() const { return options->edges && color(); }
   };
   /// Makes room for pictures of this size; ids and depth always.
-  Status prepare_targets(int width, int height, unsigned pictures);
+  Status prepare_targets(int width, int height, unsigned pictures, GLenum color_format);
   Status run(const Pass& pass);
   Status draw_samples(const Scene::Impl& scene, const ViewRays& view, const DrawOptions& options);
+  /// From the color picture, a sum of samples, to the screen picture.
+  Status resolve(const ViewRays& view, int samples);
   /// Puts what the last draw_samples drew into the host's framebuffer.
   Status composite(const HostView& host, const ViewRays& view, const DrawOptions& options, const GlStateGuard& state);
   /// What the last draw_samples drew.
@@ -93,7 +97,7 @@ class Renderer::Impl {
   Status draw_dps(const Pass& pass);
   Status draw_triangles(const Pass& pass);
   Status shade(const Pass& pass);
-  Status begin_shading(const Pass& pass);
+  Status bind_shading_framebuffer(unsigned pictures);
   void clear_pictures(const Pass& pass);
   Status shade_with(const Pass& pass, bool mesh);
   void grow_indices(std::uint32_t dps);
@@ -107,6 +111,7 @@ class Renderer::Impl {
   int width_ = 0, height_ = 0;
   float view_spread_ = 1;
   GlTexture ids_, depth_;
+  GLenum color_format_ = 0;
   std::array<GlTexture, kPictures> pictures_;
   GlFramebuffer visibility_framebuffer_, shading_framebuffer_;
 };

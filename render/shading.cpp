@@ -9,7 +9,7 @@
 namespace dupin {
 namespace {
 
-constexpr const char* kLocations[kPictures] = {"LOCATION_COLOR", "LOCATION_NORMAL_DEPTH",
+constexpr const char* kLocations[kPictures] = {"LOCATION_COLOR", "LOCATION_COLOR", "LOCATION_NORMAL_DEPTH",
                                                "LOCATION_CURVATURE", "LOCATION_DIRECTION",
                                                "LOCATION_NUMBERS"};
 
@@ -45,7 +45,7 @@ struct Variant {
 };
 
 Variant shading_variant(unsigned pictures, const DrawOptions& options, bool mesh) {
-  const bool color = pictures & 1U << kColorPicture, curves = pictures & 1U << kCurvaturePicture;
+  const bool color = pictures & (1U << kColorPicture | 1U << kScreenPicture), curves = pictures & 1U << kCurvaturePicture;
   const bool numbers = pictures & 1U << kNumbersPicture;
   Variant v;
   v.key = mesh ? "shade mesh" : "shade";
@@ -79,12 +79,12 @@ Color premultiplied_background(const DrawOptions& options) {
 
 }  // namespace
 
-Status Renderer::Impl::begin_shading(const Pass& pass) {
+Status Renderer::Impl::bind_shading_framebuffer(unsigned pictures) {
   gl->BindFramebuffer(GL_FRAMEBUFFER, shading_framebuffer_.name());
   std::vector<GLenum> buffers;
   for (int i = 0; i < kPictures; ++i) {
     const auto attachment = static_cast<GLenum>(GL_COLOR_ATTACHMENT0 + i);
-    const bool wanted = pass.pictures & 1U << i;
+    const bool wanted = pictures & 1U << i;
     const GlTexture& texture = pictures_[static_cast<std::size_t>(i)];
     gl->FramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, wanted ? texture.name() : 0, 0);
     if (wanted) buffers.push_back(attachment);
@@ -92,10 +92,8 @@ Status Renderer::Impl::begin_shading(const Pass& pass) {
   gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_.name(), 0);
   gl->DrawBuffers(static_cast<GLsizei>(buffers.size()), buffers.data());
   if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-    return {StatusCode::no_device, "this OpenGL context cannot draw into float pictures"};
+    return {StatusCode::no_device, "this OpenGL context cannot draw into the pictures asked for"};
   gl->Viewport(0, 0, width_, height_);
-  gl->ActiveTexture(GL_TEXTURE0 + kIdsUnit);
-  gl->BindTexture(GL_TEXTURE_2D, ids_.name());
   gl->BindVertexArray(empty_array_.name());
   return {};
 }
@@ -111,15 +109,18 @@ void Renderer::Impl::clear_pictures(const Pass& pass) {
       const Color c = premultiplied_background(*pass.options);
       const float n = static_cast<float>(pass.samples), infinity = std::numeric_limits<float>::infinity();
       const float color[4] = {n * c.r, n * c.g, n * c.b, n * c.a}, far[4] = {0, 0, 0, infinity}, zero[4] = {0, 0, 0, 0};
-      gl->ClearBufferfv(GL_COLOR, buffer, i == kColorPicture ? color : i == kNormalDepthPicture ? far : zero);
+      gl->ClearBufferfv(GL_COLOR, buffer, i <= kColorPicture ? color : i == kNormalDepthPicture ? far : zero);
     }
     ++buffer;
   }
 }
 
 Status Renderer::Impl::shade(const Pass& pass) {
-  Status status = begin_shading(pass);
+  Status status = bind_shading_framebuffer(pass.pictures);
   if (!status.ok()) return status;
+  if (pass.pictures & 1U << kScreenPicture) gl->Enable(GL_FRAMEBUFFER_SRGB);
+  gl->ActiveTexture(GL_TEXTURE0 + kIdsUnit);
+  gl->BindTexture(GL_TEXTURE_2D, ids_.name());
   if (pass.first) clear_pictures(pass);
   const bool mesh = !list_.runs.empty(), dps = !list_.items.empty();
   gl->Enable(GL_DEPTH_TEST);
@@ -133,7 +134,24 @@ Status Renderer::Impl::shade(const Pass& pass) {
   if (dps) status = shade_with(pass, false);
   if (status.ok() && mesh) status = shade_with(pass, true);
   gl->Disablei(GL_BLEND, 0);
+  gl->Disable(GL_FRAMEBUFFER_SRGB);
   return status;
+}
+
+Status Renderer::Impl::resolve(const ViewRays& view, int samples) {
+  const auto name = program("resolve", {{"screen.vert"}, {"resolve.frag"}, {}, {}, {{"colors", kVerticesUnit}}});
+  if (!name) return name.status();
+  set_view(*name, view);
+  gl->Uniform1f(gl->GetUniformLocation(*name, "samples"), static_cast<float>(samples));
+  const Status status = bind_shading_framebuffer(1U << kScreenPicture);
+  if (!status.ok()) return status;
+  gl->Enable(GL_FRAMEBUFFER_SRGB);
+  gl->Disable(GL_DEPTH_TEST);
+  gl->ActiveTexture(GL_TEXTURE0 + kVerticesUnit);
+  gl->BindTexture(GL_TEXTURE_2D, pictures_[kColorPicture].name());
+  gl->DrawArrays(GL_TRIANGLES, 0, 3);
+  gl->Disable(GL_FRAMEBUFFER_SRGB);
+  return {};
 }
 
 Status Renderer::Impl::shade_with(const Pass& pass, bool mesh) {

@@ -7,7 +7,8 @@ namespace {
 struct PictureFormat {
   GLenum internal, format, type;
 };
-constexpr PictureFormat kFormats[kPictures] = {{GL_RGBA32F, GL_RGBA, GL_FLOAT},
+constexpr PictureFormat kFormats[kPictures] = {{GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE},
+                                               {GL_RGBA32F, GL_RGBA, GL_FLOAT},
                                                {GL_RGBA32F, GL_RGBA, GL_FLOAT},
                                                {GL_RG32F, GL_RG, GL_FLOAT},
                                                {GL_RGBA32F, GL_RGBA, GL_FLOAT},
@@ -27,6 +28,7 @@ void allocate(const Gl& gl, GlTexture& texture, const PictureFormat& format, int
 
 unsigned pictures_for(unsigned outputs) {
   unsigned pictures = 0;
+  if (outputs & kScreen) pictures |= 1U << kScreenPicture;
   if (outputs & kColor) pictures |= 1U << kColorPicture;
   if (outputs & (kNormal | kDepth | kPosition | kUv)) pictures |= 1U << kNormalDepthPicture;
   if (outputs & (kCurvature | kDirection)) pictures |= 1U << kCurvaturePicture | 1U << kDirectionPicture;
@@ -34,7 +36,7 @@ unsigned pictures_for(unsigned outputs) {
   return pictures;
 }
 
-Status Renderer::Impl::prepare_targets(int width, int height, unsigned pictures) {
+Status Renderer::Impl::prepare_targets(int width, int height, unsigned pictures, GLenum color_format) {
   if (width < 1 || height < 1) return {StatusCode::invalid_argument, "a picture needs at least one pixel"};
   if (width > max_picture || height > max_picture)
     return {StatusCode::limit, "the picture is larger than " + std::to_string(max_picture) +
@@ -51,15 +53,19 @@ Status Renderer::Impl::prepare_targets(int width, int height, unsigned pictures)
     if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
       return {StatusCode::no_device, "this OpenGL context cannot draw numbers with a float depth buffer"};
   }
+  if (color_format != color_format_) pictures_[kColorPicture] = {};
+  color_format_ = color_format;
   for (int i = 0; i < kPictures; ++i) {
+    PictureFormat format = kFormats[i];
+    if (i == kColorPicture) format.internal = color_format;
     GlTexture& picture = pictures_[static_cast<std::size_t>(i)];
-    if ((pictures & 1U << i) && !picture) allocate(*gl, picture, kFormats[i], width, height);
+    if ((pictures & 1U << i) && !picture) allocate(*gl, picture, format, width, height);
   }
   return {};
 }
 
 void Renderer::Impl::read(Picture picture, GLenum format, GLenum type, void* pixels) {
-  gl->BindFramebuffer(GL_FRAMEBUFFER, shading_framebuffer_.name());
+  bind_shading_framebuffer(1U << picture);
   gl->ReadBuffer(static_cast<GLenum>(GL_COLOR_ATTACHMENT0 + picture));
   gl->ReadPixels(0, 0, width_, height_, format, type, pixels);
 }

@@ -1,4 +1,5 @@
 // Drawn pictures against a ray caster in double: coverage, depth, normals, curvatures, numbers.
+#include "../../render/image.h"
 #include "../../render/view.h"
 #include "device.h"
 #include "oracle.h"
@@ -112,6 +113,52 @@ TEST(Drawing, EveryFrameShowsItsOwnCamera) {
     const Camera camera = fitted(made, view, small_camera());
     expect_same(differences(made, camera, gl.draw(*scene, camera, options)));
   }
+}
+
+TEST(Drawing, ScreenColorsAreTheEncodedLinearOnes) {
+  HandMade made = every_kind();
+  made.place({});
+  TestDevice gl;
+  const auto scene = gl.upload(made);
+  const Camera camera = fitted(made, "iso", small_camera());
+  for (const int samples : {1, 4, 20})
+    for (const bool opaque : {true, false}) {
+      DrawOptions options;
+      options.samples = samples;
+      if (!opaque) options.background.reset();
+      options.outputs = kScreen;
+      const Image8 screen = screen_image(gl.draw(*scene, camera, options));
+      options.outputs = kColor;
+      const Image8 encoded = to_image8(to_image(gl.draw(*scene, camera, options)));
+      ASSERT_EQ(screen.channels, opaque ? 3 : 4);
+      ASSERT_EQ(screen.values.size(), encoded.values.size());
+      int largest = 0;
+      for (std::size_t i = 0; i < screen.values.size(); ++i) {
+        const std::size_t alpha = i / 4 * 4 + 3;
+        if (!opaque && screen.values[alpha] < 32) continue;  // colors of what can hardly be seen are coarse
+        largest = std::max(largest, std::abs(screen.values[i] - encoded.values[i]));
+      }
+      EXPECT_LE(largest, 1) << samples << " samples";
+    }
+}
+
+TEST(Drawing, NumbersAreThePixelCentresWhateverTheSamples) {
+  HandMade made = every_kind();
+  made.place({});
+  TestDevice gl;
+  const auto scene = gl.upload(made);
+  const Camera camera = fitted(made, "iso", small_camera());
+  DrawOptions options;
+  options.outputs = kEverything;
+  const Frame one = gl.draw(*scene, camera, options);
+  options.samples = 7;
+  options.outputs |= kScreen;
+  const Frame seven = gl.draw(*scene, camera, options);
+  EXPECT_EQ(one.depth, seven.depth);
+  EXPECT_EQ(one.normal, seven.normal);
+  EXPECT_EQ(one.primitive, seven.primitive);
+  EXPECT_NE(one.color, seven.color);
+  EXPECT_EQ(one.stats.covered_pixels, seven.stats.covered_pixels);
 }
 
 TEST(Drawing, FarFromTheOriginLooksTheSame) {
