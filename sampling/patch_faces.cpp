@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../core/parallel.h"
 #include "bezier_cell.h"
 #include "chart_region.h"
 #include "fitted_patches.h"
@@ -14,6 +15,11 @@ namespace {
 constexpr int kMaxDepth = 36;
 /// Cells with a trim are drawn finer than the tolerance asks, in position: two faces' sheets meet there.
 constexpr double kTrimTolerance = 0.1;
+
+/// A cell smaller than this part of the tolerance is not worth a fit: it is drawn flat.
+constexpr double kSpeck = 0.5;
+/// Patches that one thread divides at a time.
+constexpr std::size_t kPatchesPerTask = 8;
 
 /// A cell is grown by at most this part of itself to make room for its curved sides' chords.
 constexpr double kMostMargin = 0.35;
@@ -37,33 +43,19 @@ class PatchFace {
         if (trim.seam) note_seam(trim);
   }
 
-  PatchFaceResult make() {
-    PatchFaceResult result;
-    std::vector<BezierPatch> patches = bezier_patches(surface_, in_.boundary.uv_box);
-    if (!patches.empty()) {
-      for (const BezierPatch& patch : patches) divide_patch(patch);
-    } else {
-      result.rational = false;
-      for (const FittedPatch& fitted : fitted_patches(surface_, in_.boundary.uv_box, in_.tolerance, in_.normal_tolerance)) {
-        fitted_position_ = fitted.position_error, fitted_normal_ = fitted.normal_error;
-        divide_patch(fitted.patch);
-        result.defined = true;
-      }
-    }
-    result.dps = made_;
-    return result;
-  }
-
- private:
-  void divide_patch(const BezierPatch& patch) {
-    root_ = patch;
+  void divide_patch(const FittedPatch& fitted) {
+    fitted_position_ = fitted.position_error, fitted_normal_ = fitted.normal_error;
+    root_ = fitted.patch;
     Cell cell;
-    cell.patch = patch;
+    cell.patch = fitted.patch;
     for (const FaceLoop& loop : in_.boundary.loops)
       for (const FaceArc& arc : loop.arcs) cell.arcs.push_back(&arc);
     divide(cell);
   }
 
+  int made() const { return made_; }
+
+ private:
   void note_seam(const Trim& trim) {
     const Edge& edge = in_.part.edges[trim.edge];
     const Vec2 p = point_at(trim.pcurve, (edge.t0 + edge.t1) / 2);
@@ -108,6 +100,7 @@ class PatchFace {
     const double tolerance = allowed * (cell.known ? 1 : kTrimTolerance);
     allowed_ = allowed;
     const bool speck = box.diagonal() <= allowed || cell.depth >= kMaxDepth;
+    if (box.diagonal() <= kSpeck * allowed) return emit_speck(cell, uv, box, {});
     CellFit fit = fitter_.fit(cell.patch, tolerance - fitted_position_, in_.normal_tolerance - fitted_normal_);
     if (fit.valid && emit(cell, uv, fit)) return;
     if (fit.valid && widen_margins(fit)) {
@@ -343,8 +336,37 @@ class PatchFace {
   int made_ = 0;
 };
 
+/// The surface in Bézier form: exactly, or interpolated where it is not rational.
+std::vector<FittedPatch> patches_of(const PatchFaceInput& in, PatchFaceResult& result) {
+  const Surface& surface = in.part.surfaces[in.face.surface];
+  std::vector<FittedPatch> patches;
+  for (BezierPatch& patch : bezier_patches(surface, in.boundary.uv_box)) patches.push_back({std::move(patch), 0, 0});
+  if (!patches.empty()) return patches;
+  result.rational = false;
+  patches = fitted_patches(surface, in.boundary.uv_box, in.tolerance, in.normal_tolerance);
+  result.defined = !patches.empty();
+  return patches;
+}
+
 }  // namespace
 
-PatchFaceResult make_patch_face(const PatchFaceInput& in, PartDps& out) { return PatchFace(in, out).make(); }
+PatchFaceResult make_patch_face(const PatchFaceInput& in, PartDps& out) {
+  PatchFaceResult result;
+  const std::vector<FittedPatch> patches = patches_of(in, result);
+  const std::size_t tasks = (patches.size() + kPatchesPerTask - 1) / kPatchesPerTask;
+  std::vector<PartDps> parts(tasks);
+  std::vector<int> made(tasks);
+  // In parallel over groups of patches; joined in their order, so that the threads' number shows nowhere.
+  parallel_for(tasks, [&](std::size_t t) {
+    PatchFace face(in, parts[t]);
+    for (std::size_t i = t * kPatchesPerTask; i < std::min(patches.size(), (t + 1) * kPatchesPerTask); ++i) face.divide_patch(patches[i]);
+    made[t] = face.made();
+  });
+  for (std::size_t t = 0; t < tasks; ++t) {
+    append(parts[t], out);
+    result.dps += made[t];
+  }
+  return result;
+}
 
 }  // namespace dupin

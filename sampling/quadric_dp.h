@@ -111,6 +111,9 @@ struct PartDps {
   double bound_px = 0;               ///< see DpScene
 };
 
+/// Appends another part's (or face's) DPs and pieces.
+void append(const PartDps& from, PartDps& to);
+
 /// Whether a point p of the DP's frame, on F = 0, is drawn: the region's three tests, as the shader makes them.
 bool region_contains(const PartDps& part, const QuadricDp& dp, const Vec3& p);
 /// Only the third test: whether (x,y), a point of the footprint, is on the inner side of the boundary pieces.

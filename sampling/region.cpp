@@ -1,6 +1,8 @@
 // The region of a quadric DP, tested as the shader tests it.
 #include "quadric_dp.h"
 
+#include <algorithm>
+
 #include "piece_tests.h"
 
 namespace dupin {
@@ -33,6 +35,22 @@ bool region_contains(const PartDps& part, const QuadricDp& dp, const Vec3& p) {
     if (dot(plane.n, p) + plane.d < 0) return false;
   }
   return pieces_contain(part, dp, q);
+}
+
+void append(const PartDps& from, PartDps& to) {
+  const auto planes = static_cast<std::uint32_t>(to.planes.size()), lines = static_cast<std::uint32_t>(to.lines.size());
+  const auto arcs = static_cast<std::uint32_t>(to.arcs.size()), ellipses = static_cast<std::uint32_t>(to.ellipses.size());
+  to.dps.reserve(to.dps.size() + from.dps.size());
+  for (QuadricDp dp : from.dps) {
+    dp.first_plane += planes, dp.first_line += lines, dp.first_arc += arcs, dp.first_ellipse += ellipses;
+    to.dps.push_back(dp);
+  }
+  to.bound_px = std::max(to.bound_px, from.bound_px);
+  to.planes.insert(to.planes.end(), from.planes.begin(), from.planes.end());
+  to.lines.insert(to.lines.end(), from.lines.begin(), from.lines.end());
+  to.arcs.insert(to.arcs.end(), from.arcs.begin(), from.arcs.end());
+  to.ellipses.insert(to.ellipses.end(), from.ellipses.begin(), from.ellipses.end());
+  to.skipped.insert(to.skipped.end(), from.skipped.begin(), from.skipped.end());
 }
 
 std::size_t DpScene::count() const {

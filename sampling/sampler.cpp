@@ -150,20 +150,6 @@ class PartSampler {
   std::vector<ArcChain> chains_;
 };
 
-void append(const FaceDps& face, PartDps& out) {
-  const auto planes = static_cast<std::uint32_t>(out.planes.size()), lines = static_cast<std::uint32_t>(out.lines.size());
-  const auto arcs = static_cast<std::uint32_t>(out.arcs.size()), ellipses = static_cast<std::uint32_t>(out.ellipses.size());
-  for (QuadricDp dp : face.dps.dps) {
-    dp.first_plane += planes, dp.first_line += lines, dp.first_arc += arcs, dp.first_ellipse += ellipses;
-    out.dps.push_back(dp);
-  }
-  out.bound_px = std::max(out.bound_px, face.dps.bound_px);
-  out.planes.insert(out.planes.end(), face.dps.planes.begin(), face.dps.planes.end());
-  out.lines.insert(out.lines.end(), face.dps.lines.begin(), face.dps.lines.end());
-  out.arcs.insert(out.arcs.end(), face.dps.arcs.begin(), face.dps.arcs.end());
-  out.ellipses.insert(out.ellipses.end(), face.dps.ellipses.begin(), face.dps.ellipses.end());
-}
-
 }  // namespace
 
 Result<DpScene> sample_quadric_dps(const Model& model, const SamplingOptions& options) {
@@ -187,7 +173,7 @@ Result<DpScene> sample_quadric_dps(const Model& model, const SamplingOptions& op
     if (stop) return {StatusCode::cancelled, "cancelled"};
     PartDps& out = scene.parts[p];
     for (std::size_t i = 0; i < faces.size(); ++i) {
-      append(faces[i], out);
+      append(faces[i].dps, out);
       if (faces[i].failure.empty()) continue;
       const std::string& name = part.faces[i].name;
       out.skipped.push_back({name.empty() ? "face " + std::to_string(i + 1) + " of " + part.name : name, faces[i].failure, 1});
