@@ -159,6 +159,65 @@ TEST(Failures, AMemoryLimitEndsTheCommand) {
   EXPECT_THAT(folder.names(), IsEmpty());
 }
 
+/// A reader of the test's own, in place of the real one.
+class BadReader : public testing::Test {
+ protected:
+  void use(const std::string& script) {
+    const std::string reader = folder_.write("reader", "#!/bin/sh\n" + script + "\n");
+    chmod(reader.c_str(), 0700);
+    setenv("DUPIN_READER", reader.c_str(), 1);
+  }
+  void TearDown() override { unsetenv("DUPIN_READER"); }
+  Outcome render(std::vector<std::string> more = {}) {
+    std::vector<std::string> arguments{"render", sample("bracket.step"), "-o", output_.path("a.png")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_dupin(arguments);
+  }
+  Folder folder_, output_;
+};
+
+TEST_F(BadReader, ThatCrashesIsReported) {
+  use("kill -SEGV $$");
+  expect_failure(render(), 3, "bracket.step");
+  EXPECT_THAT(output_.names(), IsEmpty());
+}
+
+TEST_F(BadReader, ThatHangsIsEndedWhenTheTimeIsOver) {
+  use("exec sleep 100");
+  const Outcome outcome = render({"--time-limit", "1"});
+  expect_failure(outcome, 5);
+  EXPECT_LT(outcome.seconds, 4);
+  EXPECT_THAT(output_.names(), IsEmpty());
+}
+
+TEST_F(BadReader, ThatAnswersNonsenseIsReported) {
+  use("head -c 100000 /dev/urandom");
+  expect_failure(render(), 3);
+  EXPECT_THAT(output_.names(), IsEmpty());
+}
+
+TEST_F(BadReader, ThatIsNotThereIsReported) {
+  setenv("DUPIN_READER", folder_.path("none").c_str(), 1);
+  expect_failure(render(), 3, "reader");
+}
+
+// Bytes changed anywhere: the kernel behind the reader may crash on any of these, the command may not.
+TEST(Failures, DamagedFilesAreDrawnRefusedOrDrawnInPart) {
+  const std::string good = read_file(sample("bracket.step"));
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    std::string bad = good;
+    for (unsigned i = 0; i < 3 * seed; ++i) bad[random() % bad.size()] = static_cast<char>('0' + random() % 10);
+    const Folder input, output;
+    const Outcome outcome = run_dupin({"render", input.write("bad.step", bad), "-o", output.path("a.png"), "--resolution",
+                                       "64,64", "--time-limit", "20", "--memory-limit", "4G"});
+    EXPECT_THAT(outcome.exit_code, testing::AnyOf(0, 3, 4, 5)) << outcome.err;
+    EXPECT_EQ(output.names().size(), outcome.exit_code == 0 || outcome.exit_code == 4 ? 1u : 0u);
+    EXPECT_LT(outcome.seconds, 22);
+  }
+}
+
 TEST(Failures, QuietSaysNothingWhenAllIsWell) {
   const Folder folder;
   const Outcome outcome = run_dupin({"render", sample("bracket.step"), "-o", folder.path("a.png"), "--quiet"});

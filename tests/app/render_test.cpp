@@ -141,6 +141,33 @@ TEST(Render, BothDevicesDraw) {
   EXPECT_THAT(render(folder, "b.png", {"--device", "osmesa"})["device"].get<std::string>(), HasSubstr("OSMesa"));
 }
 
+// A thousand times closer: the bound in pixels still holds, and the picture is full of the surface looked at.
+TEST(Render, CloseUpsKeepTheBound) {
+  const Folder folder;
+  const std::string file = sample("freeform.step");
+  const Outcome outcome = run_dupin({"info", file, "--json"});
+  const json box = json::parse(outcome.out)["bounding_box"];
+  std::vector<double> middle, size;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double lo = box["min"][axis], hi = box["max"][axis];
+    middle.push_back((lo + hi) / 2 + 0.01 * (hi - lo));
+    size.push_back(hi - lo);
+  }
+  // From above the first surface met is the cover's skin.
+  const json whole = render(folder, "whole.png", {"--view", "top", "--orthographic"}, file);
+  const std::string at = std::to_string(middle[0]) + "," + std::to_string(middle[1]) + ",";
+  const json close = render(folder, "close.png",
+                            {"--eye=" + at + std::to_string(box["max"][2].get<double>() + size[2]),
+                             "--target=" + at + "0", "--up-vector", "0,1,0", "--orthographic", "--height",
+                             std::to_string(std::max(size[0], size[1]) / 1000)},
+                            file);
+  EXPECT_LE(whole["error"]["bound_px"], 0.5);
+  EXPECT_LE(close["error"]["bound_px"], 0.5);
+  EXPECT_LE(close["error"]["normal_bound_degrees"], 0.25);
+  EXPECT_EQ(close["image"]["covered_pixels"], 160 * 120);
+  EXPECT_LT(close["error"]["bound"].get<double>(), whole["error"]["bound"].get<double>());
+}
+
 TEST(Info, SaysWhatTheSampleHolds) {
   const Outcome outcome = run_dupin({"info", sample("bracket.step"), "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
