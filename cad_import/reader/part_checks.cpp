@@ -182,8 +182,9 @@ void mark_smooth_edges(Part& part) {
 
 bool is_watertight(const Part& part) {
   for (const auto& uses : uses_by_edge(part)) {
-    if (uses.empty()) continue;
-    if (uses.size() != 2 || uses[0].runs_backwards() == uses[1].runs_backwards()) return false;
+    // As often one way as the other; more than once each where a solid touches itself.
+    const auto backwards = std::count_if(uses.begin(), uses.end(), [](const Use& use) { return use.runs_backwards(); });
+    if (static_cast<std::size_t>(2 * backwards) != uses.size()) return false;
   }
   // A face without loops is closed in itself only if its surface is.
   for (const Face& face : part.faces) {

@@ -12,7 +12,7 @@ inline constexpr double kSmoothDegrees = 0.5;
 /// Sets Edge::smooth from the faces' normals along each edge.
 void mark_smooth_edges(Part& part);
 
-/// Every edge bounds exactly two faces, from opposite sides.
+/// Every edge bounds faces from both sides alike.
 bool is_watertight(const Part& part);
 
 /// The volume that the faces enclose, positive if their normals point outward, and the area's scale that says
