@@ -27,6 +27,8 @@ constexpr double kCurveFit = 1e-9;
 
 // A deviation between the samples may be this much larger than at them.
 constexpr double kSampling = 1.5;
+// As parts of the piece's size: rounding in files, and what can still be one vertex.
+constexpr double kLeastTolerance = 1e-10, kLargestMiss = 1e-3;
 
 class SurfaceTable {
  public:
@@ -65,6 +67,7 @@ class PartBuilder {
     repair_faces();
     take_faces();
     drop_invalid();
+    set_tolerances();
     drop_unused();
     set_part_box(built_.part);
     mark_smooth_edges(built_.part);
@@ -169,6 +172,7 @@ class PartBuilder {
   }
 
   void take_faces() {
+    deviations_.assign(built_.part.edges.size(), 0);
     int refitted = 0;
     for (std::size_t i = 0; i < pending_.size(); ++i) {
       Pending& p = pending_[i];
@@ -186,7 +190,7 @@ class PartBuilder {
       face.name = source.name;
       number_new_edges(face);
       for (const auto& [edge, deviation] : p.result.deviations)
-        built_.part.edges[edge].tolerance = std::max(built_.part.edges[edge].tolerance, kSampling * deviation);
+        deviations_[edge] = std::max(deviations_[edge], kSampling * deviation);
       built_.part.faces.push_back(std::move(face));
       built_.shapes.push_back(p.task.shape);
     }
@@ -210,6 +214,30 @@ class PartBuilder {
     std::vector<TopoDS_Face> shapes;
     for (const std::size_t i : stay) shapes.push_back(built_.shapes[i]);
     built_.shapes = std::move(shapes);
+  }
+
+  // Measured ones: a file's own may be anything. Edges that follow each other may miss each other at their vertex.
+  void set_tolerances() {
+    deviations_.resize(built_.part.edges.size(), 0);
+    for (const Face& face : built_.part.faces)
+      for (const Loop& loop : face.loops) {
+        std::vector<const Trim*> real;
+        for (const Trim& trim : loop)
+          if (built_.part.edges[trim.edge].curve) real.push_back(&trim);
+        for (std::size_t i = 0; i < real.size(); ++i) {
+          const Trim &a = *real[i], &b = *real[(i + 1) % real.size()];
+          const double gap = distance(end_of(a, true), end_of(b, false));
+          if (!(gap < kLargestMiss * size_)) continue;  // a collapsed side lies between them
+          for (const std::uint32_t edge : {a.edge, b.edge}) deviations_[edge] = std::max(deviations_[edge], gap);
+        }
+      }
+    for (std::size_t i = 0; i < deviations_.size(); ++i)
+      built_.part.edges[i].tolerance = std::max(deviations_[i], kLeastTolerance * size_);
+  }
+
+  Vec3 end_of(const Trim& trim, bool last) const {
+    const Edge& edge = built_.part.edges[trim.edge];
+    return point_at(*edge.curve, last != trim.reversed ? edge.t1 : edge.t0);
   }
 
   // Edges of faces that were skipped may have anything in them.
@@ -255,6 +283,7 @@ class PartBuilder {
   Topology topology_;
   SurfaceTable surfaces_;
   std::vector<Pending> pending_;
+  std::vector<double> deviations_;  ///< per edge, how far curve, pcurves and vertices were seen to lie from each other
   double size_ = 1;
 };
 
