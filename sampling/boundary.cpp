@@ -120,7 +120,7 @@ class Widening {
 };
 
 void append_trim(const Part& part, const Surface& surface, const Trim& trim, const std::vector<ArcChain>& chains, bool with_uv,
-                 FaceLoop& loop, std::vector<Vec2>& polygon, std::vector<std::array<Vec3, 2>>& outward) {
+                 FaceLoop& loop, std::vector<Vec2>& polygon, std::vector<std::array<Vec3, 3>>& outward) {
   const Edge& edge = part.edges[trim.edge];
   const auto& arcs = chains[trim.edge].arcs;
   if (arcs.empty() || trim.degenerate) {
@@ -138,21 +138,27 @@ void append_trim(const Part& part, const Surface& surface, const Trim& trim, con
     const Vec3 middle = a.line ? (a.p0 + a.p2) * 0.5 : a.p1;
     const Widening widening(surface, trim, edge);
     outward.push_back({widening.at(trim.reversed ? a.t1 : a.t0, a.p0, middle - a.p0),
+                       widening.at((a.t0 + a.t1) / 2, point_at(*edge.curve, (a.t0 + a.t1) / 2), a.p2 - a.p0),
                        widening.at(trim.reversed ? a.t0 : a.t1, a.p2, a.p2 - middle)});
   }
 }
 
 /// Files are exact to a tolerance: an edge may lie off both its faces, and its projections onto them apart. Each face reaches out by
 /// as much as the edge is off it, so that no crack shows however near one looks. Arcs stay joined.
-void reach_over_gaps(FaceLoop& loop, const std::vector<std::array<Vec3, 2>>& outward) {
+void reach_over_gaps(FaceLoop& loop, const std::vector<std::array<Vec3, 3>>& outward) {
   const std::size_t n = loop.arcs.size();
   if (n < 2 || outward.size() != n) return;
   std::vector<Vec3> joint(n);  // where arc i ends
-  for (std::size_t i = 0; i < n; ++i) joint[i] = (outward[i][1] + outward[(i + 1) % n][0]) * 0.5;
+  for (std::size_t i = 0; i < n; ++i) joint[i] = (outward[i][2] + outward[(i + 1) % n][0]) * 0.5;
   for (std::size_t i = 0; i < n; ++i) {
     ConicArc3& arc = loop.arcs[i].arc;
     const Vec3 &first = joint[(i + n - 1) % n], &last = joint[i];
-    arc.p0 += first, arc.p1 += (first + last) * 0.5, arc.p2 += last;
+    arc.p0 += first, arc.p2 += last;
+    // The ends may be exact and the middle off: its displacement d takes p1 along by d (1 + w) / w, less what the ends bring.
+    const Vec3 ends = (first + last) * 0.5, bow = outward[i][1] - ends;
+    if (arc.line && bow == Vec3{}) continue;
+    if (arc.line) arc.line = false, arc.w = 1, arc.p1 = (arc.p0 + arc.p2) * 0.5 + bow * 2;
+    else arc.p1 += ends + bow * ((1 + arc.w) / arc.w);
   }
 }
 
@@ -194,7 +200,7 @@ FaceBoundary face_boundary(const Part& part, const Face& face, const std::vector
   for (const Loop& trims : face.loops) {
     FaceLoop loop;
     std::vector<Vec2> polygon;
-    std::vector<std::array<Vec3, 2>> outward;
+    std::vector<std::array<Vec3, 3>> outward;
     bool broken_by_seam = false;
     for (const Trim& trim : trims) {
       append_trim(part, part.surfaces[face.surface], trim, chains, with_uv, loop, polygon, outward);

@@ -117,8 +117,12 @@ class PartSampler {
     const Surface& spline = part_.surfaces[face.surface];
     const Recast recast(spline, recognized.surface, boundary.uv_box);
     auto inside = [&](const Vec3& p) {
-      const auto uv = invert(spline, p, recast.nearest_parameters(p));
-      return uv && uv_inside(boundary, *uv);
+      const Vec2 near = recast.nearest_parameters(p);
+      const auto found = invert(spline, p, near);
+      // A seam or a pole is inside, not on the outline that the loops make of it.
+      const Box2& box = boundary.uv_box;
+      const Vec2 margin = box.size() * 1e-6, uv = found ? *found : near;
+      return uv_inside(boundary, {std::clamp(uv.x, box.lo.x + margin.x, box.hi.x - margin.x), std::clamp(uv.y, box.lo.y + margin.y, box.hi.y - margin.y)});
     };
     const QuadricFaceInput in{part_, face, index, recognized.surface, boundary, recast.box(), {}, inside, !face.reversed};
     if (std::holds_alternative<Plane>(recognized.surface.geometry)) make_plane_face(in, out.dps);

@@ -68,7 +68,7 @@ TEST_P(RealModels, AreCoveredAndWithinTheirBounds) {
 INSTANTIATE_TEST_SUITE_P(
     Data, RealModels,
     ::testing::Values("cad/nist/nist_ctc_02_asme1_ap242.stp", "cad/freecad/as1-ac-214.stp", "cad/occt/linkrods.step",
-                      "cad/occt/bearing.iges", "nurbs/converted/teapot.step", "nurbs/converted/v1_Camera_visible.step",
+                      "cad/occt/bearing.iges", "nurbs/converted/teapot.step", "nurbs/converted/v1_Camera_visible.step", "nurbs/converted/v1_HumanHead1_visible.step",
                       "cad/kicad/RV_Disc_D9mm_W4.1mm_P5mm.step", "cad/truck/abc-0008.step", "cad/occt/screw.step"),
     [](const auto& i) {
       std::string n = std::filesystem::path(i.param).stem().string();
