@@ -80,18 +80,24 @@ std::uint32_t features_first(const std::vector<Piece>& pieces, std::uint32_t fir
 }
 
 void encode_pieces(const PartDps& part, const QuadricDp& dp, std::vector<Texel>& texels) {
-  const std::uint32_t lines = features_first(part.lines, dp.first_line, dp.lines, [&](const LinePiece& p) {
-    texels.push_back(texel(p.p0.x, p.p0.y, p.p1.x, p.p1.y));
-  });
-  const std::uint32_t arcs = features_first(part.arcs, dp.first_arc, dp.arcs, [&](const ArcPiece& p) {
-    texels.push_back(texel(p.p0.x, p.p0.y, p.p1.x, p.p1.y));
-    texels.push_back(texel(p.p2.x, p.p2.y, p.w, 0));
-  });
-  const std::uint32_t ellipses =
-      features_first(part.ellipses, dp.first_ellipse, dp.ellipses, [&](const EllipsePiece& p) {
-        texels.push_back(texel(p.center.x, p.center.y, p.mxx, p.mxy));
-        texels.push_back(texel(p.myy, 0, 0, 0));
-      });
+  const Vec2 r = dp.reference;
+  const auto put_line = [&](const LinePiece& p) {
+    const Vec2 a = p.p0 - r, b = p.p1 - r;
+    texels.push_back(texel(a.x, a.y, b.x, b.y));
+  };
+  const auto put_arc = [&](const ArcPiece& p) {
+    const bool turn = cross(p.p1 - p.p0, p.p2 - p.p0) < 0;
+    const Vec2 a = (turn ? p.p2 : p.p0) - r, b = p.p1 - r, c = (turn ? p.p0 : p.p2) - r;
+    texels.push_back(texel(a.x, a.y, b.x, b.y));
+    texels.push_back(texel(c.x, c.y, 4 * p.w * p.w, 0));
+  };
+  const auto put_ellipse = [&](const EllipsePiece& p) {
+    texels.push_back(texel(p.center.x - r.x, p.center.y - r.y, p.mxx, p.mxy));
+    texels.push_back(texel(p.myy, 0, 0, 0));
+  };
+  const std::uint32_t lines = features_first(part.lines, dp.first_line, dp.lines, put_line);
+  const std::uint32_t arcs = features_first(part.arcs, dp.first_arc, dp.arcs, put_arc);
+  const std::uint32_t ellipses = features_first(part.ellipses, dp.first_ellipse, dp.ellipses, put_ellipse);
   const auto pack = [](std::uint32_t l, std::uint32_t a, std::uint32_t e) { return l | a << 12 | e << 24; };
   const std::size_t own = texels.size() - dp.lines - 2u * dp.arcs - 2u * dp.ellipses - dp.planes - 1;
   texels[own] = {pack(dp.lines, dp.arcs, dp.ellipses), pack(lines, arcs, ellipses), bits(dp.reference.x),

@@ -12,8 +12,8 @@
 //   then, if kPieces:
 //          counts: lines | arcs << 12 | ellipses << 24; the same of those that are feature edges; reference
 //          x, y
-//   then the planes (n, d), lines (p0, p1), arcs (p0, p1; p2, w, 0) and ellipses (center, mxx, mxy; myy, 0,
-//   0, 0), each kind with its feature edges first.
+//   then the planes (n, d), lines (p0, p1), arcs (p0, p1; p2, 4w², 0) and ellipses (center, mxx, mxy; myy, 0, 0, 0), each kind with its
+//   feature edges first. All but the planes are relative to the reference; an arc's triangle p0 p1 p2 is counter-clockwise.
 //
 // meta: flags in bits 0–4 and 14, the quaternion's largest part in bits 6–7, feature_sides in bits 8–13, planes in
 // bits 16–23 and those of them that are feature edges in bits 24–31.

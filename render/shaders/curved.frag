@@ -5,6 +5,7 @@ flat in vec3 s, f, p, q;
 flat in vec4 bend, depth;
 flat in vec3 side0, side1, side2, side3;
 flat in uvec3 id;
+flat in vec2 z0;
 layout(location = 0) out uint out_id;
 
 bool region_contains(inout Region at) {
@@ -31,13 +32,13 @@ void meet_bounds(inout Region at) {
 #endif
 
 // The point at t on the ray, and how it moves on the surface when the pixel's place moves by one pixel.
-Region region_at(vec3 o, vec3 d, float t, float reach) {
+Region region_at(vec3 o, vec3 d, float t, float reach_here) {
   Region at;
   at.p = o + t * d;
   at.rounding = depth.w;
 #ifdef EDGES
   vec3 g = quadric_gradient(bend, depth.x, at.p);
-  vec3 across = reach * pixel.x * p, down = reach * pixel.y * q;
+  vec3 across = reach_here * pixel.x * p, down = reach_here * pixel.y * q;
   float along = dot(g, d);
   at.px = across - d * (dot(g, across) / along);
   at.py = down - d * (dot(g, down) / along);
@@ -49,27 +50,24 @@ Region region_at(vec3 o, vec3 d, float t, float reach) {
 void main() {
   vec2 at = gl_FragCoord.xy * pixel - 1.0;
   vec3 across = at.x * p + at.y * q;
-  vec3 o = s + start * across, d = f + spread * across;
-  float t0 = -dot(o, d) / dot(d, d);
-  o += t0 * d;
-  float first, second, slope;
-  if (!quadric_roots(bend, depth.x, o, d, first, second, slope)) discard;
+  vec3 o = s + z0.y * across, d = f + spread * across;
+  Roots roots = quadric_roots(bend, depth.x, o, d);
+  if (!(roots.discriminant >= 0.0)) discard;
 #ifdef FRONT_ONLY
   // Only one of the two is met from outside: there F falls along the ray, or rises if n points inwards.
-  bool on_second = (id.y & kFlipped) != 0u ? slope < 0.0 : slope >= 0.0;
-  float t = on_second ? second : first, z = start_depth + t0 + t;
-  Region region = region_at(o, d, t, start + spread * (t0 + t));
+  bool on_second = (id.y & kFlipped) != 0u ? roots.slope < 0.0 : roots.slope >= 0.0;
+  float t = on_second ? roots.q / roots.A : roots.C / roots.q, z = z0.x + t;
+  Region region = region_at(o, d, t, z0.y + spread * t);
   bool hit = z >= near_depth && region_contains(region);
 #else
-  bool second_nearer = second < first;
-  float t = 0.0, z = 0.0;
-  bool hit = false, on_second = second_nearer;
+  float first = roots.C / roots.q, second = roots.q / roots.A, t = 0.0, z = 0.0;
+  bool second_nearer = second < first, hit = false, on_second = second_nearer;
   Region region;
   for (int i = 0; i < 2; ++i) {
     on_second = second_nearer != (i == 1);
     t = on_second ? second : first;
-    z = start_depth + t0 + t;
-    region = region_at(o, d, t, start + spread * (t0 + t));
+    z = z0.x + t;
+    region = region_at(o, d, t, z0.y + spread * t);
     hit = z >= near_depth && region_contains(region);
     if (hit) break;
   }

@@ -5,6 +5,7 @@ flat out vec3 s, f, p, q;
 flat out vec4 bend, depth;  // λu λv a b | c, z lo, z hi, rounding
 flat out vec3 side0, side1, side2, side3;
 flat out uvec3 id;          // number, meta, pieces' texel
+flat out vec2 z0;           // the depth where rays start, and their reach there
 #ifdef EDGES
 flat out float ink;
 #endif
@@ -87,6 +88,7 @@ void main() {
   q = t3.xyz;
   bend = slot_texel(slot, 4);
   depth = vec4(t5.xyz, t3.w);
+  z0 = vec2(t11.w, reach(t11.w));
   id = uvec3(uint(slot) + 1u, t0.w, t1.w);
 #ifdef FLAT_ARCS
   reference = heap_texel(int(t1.w)).zw;

@@ -20,8 +20,8 @@ void meet_edge(inout Region at, float g, vec3 gradient) {
   at.nearest = min(at.nearest, g * g / max(dot(slope, slope), 1e-37));
 }
 // An edge that ends: beyond its ends the way past the end counts, too.
-void meet_segment(inout Region at, float side, vec2 a, vec2 ab) {
-  float along = dot(at.p.xy - a, ab), beyond = max(max(-along, along - dot(ab, ab)), 0.0);
+void meet_segment(inout Region at, float side, vec2 from_a, vec2 ab) {
+  float along = dot(from_a, ab), beyond = max(max(-along, along - dot(ab, ab)), 0.0);
   vec2 across = vec2(-ab.y, ab.x);
   vec2 slope = vec2(dot(across, at.px.xy), dot(across, at.py.xy)), run = vec2(dot(ab, at.px.xy), dot(ab, at.py.xy));
   at.nearest = min(at.nearest, max(side * side / max(dot(slope, slope), 1e-37), beyond * beyond / max(dot(run, run), 1e-37)));
@@ -41,53 +41,52 @@ void test_planes(inout Region at, int texel, int planes, int features) {
 }
 #endif
 
+// Pieces are stored relative to the region's reference, and `here` is the point relative to it: the way between the two crosses a–b if
+// a and b lie on different sides of it, by one expression of each end, so that pieces that share an end are counted consistently, and
+// the two lie on different sides of a–b.
 #if defined(LINES) || defined(ARCS) || defined(FLAT_ARCS)
-// Crosses the segment a–b with the way from the reference r to the point; gives on which side of a–b the point lies.
-float cross_segment(inout Region at, vec2 r, vec2 a, vec2 b) {
-  vec2 d = at.p.xy - r, ab = b - a;
-  float side = cross2(ab, at.p.xy - a);
-  bool between = (cross2(d, a - r) > 0.0) != (cross2(d, b - r) > 0.0);
-  at.inside = at.inside != (between && (side > 0.0) != (cross2(ab, r - a) > 0.0));
+float cross_segment(inout Region at, vec2 here, vec2 a, vec2 b) {
+  float side = cross2(b - a, here - a);
+  bool between = (cross2(here, a) > 0.0) != (cross2(here, b) > 0.0);
+  at.inside = at.inside != (between && (side > 0.0) != (cross2(a, b) > 0.0));
   return side;
 }
 #endif
 
 #ifdef LINES
-void test_line(inout Region at, vec2 r, vec4 l, bool feature) {
-  float side = cross_segment(at, r, l.xy, l.zw);
+void test_line(inout Region at, vec2 here, vec4 l, bool feature) {
+  float side = cross_segment(at, here, l.xy, l.zw);
   vec2 ab = l.zw - l.xy, size = abs(ab);
-  at.near = at.near || (abs(side) <= at.rounding * max(size.x, size.y) && dot(at.p.xy - l.xy, at.p.xy - l.zw) <= 0.0);
+  at.near = at.near || (abs(side) <= at.rounding * max(size.x, size.y) && dot(here - l.xy, here - l.zw) <= 0.0);
 #ifdef EDGES
-  if (feature) meet_segment(at, side, l.xy, ab);
+  if (feature) meet_segment(at, side, here - l.xy, ab);
 #endif
 }
 #endif
 
 #if defined(ARCS) || defined(FLAT_ARCS)
-void test_arc(inout Region at, vec2 r, vec4 a01, vec4 a2w, bool feature) {
+// The triangle p0 p1 p2 is counter-clockwise. In barycentric coordinates, here times its area, a point is in the bulge if
+// 0 <= b1² < 4 w² b0 b2; b1 is told by the chord's side, by the same expression.
+void test_arc(inout Region at, vec2 here, vec4 a01, vec4 a2w, bool feature) {
   vec2 p0 = a01.xy, p1 = a01.zw, p2 = a2w.xy;
-  float side = cross_segment(at, r, p0, p2);
-  // In the bulge if 0 <= b1² < 4 w² b0 b2 in barycentric coordinates; b1's sign is the chord's side, by the same expression.
-  vec2 e0 = p2 - p1, e1 = p0 - p2, e2 = p1 - p0, d = at.p.xy - p1;
-  float area = cross2(e2, -e1), b0 = cross2(e0, d), b2 = cross2(e2, d), b1 = -side, sharp = 4.0 * a2w.z * a2w.z;
-  float g = sharp * b0 * b2 - b1 * b1;
-  bool between = area > 0.0 ? min(b0, b2) >= 0.0 : max(b0, b2) <= 0.0;
-  bool bulge = between && (side > 0.0) == (area < 0.0);
+  float side = cross_segment(at, here, p0, p2);
+  vec2 e0 = p2 - p1, e1 = p0 - p2, e2 = p1 - p0, d = here - p1;
+  float b0 = cross2(e0, d), b2 = cross2(e2, d), sharp = a2w.z;
+  float g = sharp * b0 * b2 - side * side;
+  bool bulge = min(b0, b2) >= 0.0 && !(side > 0.0);
   at.inside = at.inside != (bulge && g > 0.0);
-  vec2 turned = sharp * (e0 * b2 + e2 * b0) - 2.0 * b1 * e1, gradient = vec2(-turned.y, turned.x);
+  vec2 turned = sharp * (e0 * b2 + e2 * b0) + 2.0 * side * e1, gradient = vec2(-turned.y, turned.x);
   at.near = at.near || (bulge && g * g <= at.rounding * at.rounding * dot(gradient, gradient));
 #ifdef EDGES
   // On the arc's side of the chord, and not past its ends by more than a little.
-  float slack = 0.02 * abs(area);
-  bool beside = area > 0.0 ? min(min(b0, b2), b1) >= -slack : max(max(b0, b2), b1) <= slack;
-  if (feature && beside) meet_edge(at, g, vec3(gradient, 0.0));
+  if (feature && min(min(b0, b2), -side) >= -0.02 * cross2(e0, e1)) meet_edge(at, g, vec3(gradient, 0.0));
 #endif
 }
 #endif
 
 #ifdef ELLIPSES
-void test_ellipse(inout Region at, vec4 e, float myy, bool feature) {
-  vec2 d = at.p.xy - e.xy, q = vec2(e.z * d.x + e.w * d.y, e.w * d.x + myy * d.y);
+void test_ellipse(inout Region at, vec2 here, vec4 e, float myy, bool feature) {
+  vec2 d = here - e.xy, q = vec2(e.z * d.x + e.w * d.y, e.w * d.x + myy * d.y);
   float g = 1.0 - dot(q, q);
   vec2 gradient = -2.0 * vec2(e.z * q.x + e.w * q.y, e.w * q.x + myy * q.y);
   at.inside = at.inside != (g > 0.0);
@@ -103,7 +102,8 @@ flat in vec4 arcs[2 * FLAT_ARCS];
 flat in vec2 reference;
 void test_pieces(inout Region at, int texel, uint meta) {
   at.inside = (meta & kReferenceInside) != 0u;
-  for (int i = 0; i < FLAT_ARCS; ++i) test_arc(at, reference, arcs[2 * i], arcs[2 * i + 1], false);
+  vec2 here = at.p.xy - reference;
+  for (int i = 0; i < FLAT_ARCS; ++i) test_arc(at, here, arcs[2 * i], arcs[2 * i + 1], false);
   at.inside = at.inside || at.near;
 }
 #elif defined(PIECES)
@@ -112,24 +112,22 @@ void test_pieces(inout Region at, int texel, uint meta) {
   int planes = int((meta >> 16) & 255u);
   ++texel;
   at.inside = (meta & kReferenceInside) != 0u;
-#if defined(LINES) || defined(ARCS)
-  vec2 r = uintBitsToFloat(head.zw);
-#endif
+  vec2 here = at.p.xy - uintBitsToFloat(head.zw);
   int next = texel + planes;
 #ifdef LINES
   int lines = int(head.x & 4095u), feature_lines = int(head.y & 4095u);
-  for (int i = 0; i < lines; ++i) test_line(at, r, heap_texel(next + i), i < feature_lines);
+  for (int i = 0; i < lines; ++i) test_line(at, here, heap_texel(next + i), i < feature_lines);
   next += lines;
 #endif
 #ifdef ARCS
   int arcs = int((head.x >> 12) & 4095u), feature_arcs = int((head.y >> 12) & 4095u);
-  for (int i = 0; i < arcs; ++i) test_arc(at, r, heap_texel(next + 2 * i), heap_texel(next + 2 * i + 1), i < feature_arcs);
+  for (int i = 0; i < arcs; ++i) test_arc(at, here, heap_texel(next + 2 * i), heap_texel(next + 2 * i + 1), i < feature_arcs);
   next += 2 * arcs;
 #endif
 #ifdef ELLIPSES
   int ellipses = int(head.x >> 24), feature_ellipses = int(head.y >> 24);
   for (int i = 0; i < ellipses; ++i)
-    test_ellipse(at, heap_texel(next + 2 * i), heap_texel(next + 2 * i + 1).x, i < feature_ellipses);
+    test_ellipse(at, here, heap_texel(next + 2 * i), heap_texel(next + 2 * i + 1).x, i < feature_ellipses);
 #endif
   at.inside = at.inside || at.near;
 #ifdef PLANES

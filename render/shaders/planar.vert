@@ -28,7 +28,9 @@ void main() {
   uvec4 t0 = texelFetch(slots, slot * kSlotTexels), t1 = texelFetch(slots, slot * kSlotTexels + 1);
   vec3 s = uintBitsToFloat(t0.xyz), f = uintBitsToFloat(t1.xyz), p = slot_texel(slot, 2).xyz;
   vec4 t3 = slot_texel(slot, 3);
-  vec3 q = t3.xyz, a = start * p, b = start * q;
+  vec4 rx = slot_texel(slot, 8), ry = slot_texel(slot, 9), rf = slot_texel(slot, 10);
+  float z0 = rf.w;
+  vec3 q = t3.xyz, a = reach(z0) * p, b = reach(z0) * q;
   vec4 c01 = slot_texel(slot, 6), c23 = slot_texel(slot, 7);
 
   // The ray meets z = 0 in (o.xy d.z − d.xy o.z) / d.z; the product of what is linear in X, Y in o and d cancels, as they are
@@ -37,7 +39,7 @@ void main() {
   vec2 h0 = s.xy * f.z - f.xy * s.z;
   vec2 hx = s.xy * fs.z - fs.xy * s.z + a.xy * f.z - f.xy * a.z;
   vec2 hy = s.xy * gs.z - gs.xy * s.z + b.xy * f.z - f.xy * b.z;
-  float eye_z = spread > 0.0 ? s.z - start_depth * f.z : -f.z;
+  float eye_z = spread > 0.0 ? s.z - z0 * f.z : -f.z;
   float sign_w = eye_z < 0.0 ? 1.0 : -1.0;
   mat3 rows = sign_w * mat3(hx.x, hy.x, h0.x, hx.y, hy.y, h0.y, fs.z, gs.z, f.z);  // columns: xW, yW, W over (X, Y, 1)
 
@@ -56,7 +58,6 @@ void main() {
 #endif
 
   // Both sides that meet in the corner are moved out by kGrow pixels.
-  vec4 rx = slot_texel(slot, 8), ry = slot_texel(slot, 9), rf = slot_texel(slot, 10);
   vec2 c = corner_of(c01, c23, i), to = side_to(c01, c23, i), from = side_from(c01, c23, i);
   vec2 ju, jv;
   jacobian(c, rx, ry, rf, ju, jv);

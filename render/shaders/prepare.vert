@@ -51,8 +51,12 @@ void main() {
   float rounding = 3e-7 * (max(max(abs(origin.x), abs(origin.y)), abs(origin.z)) + length(s) + extent);
   vec3 row_x = instance_texel(5), row_y = instance_texel(6), row_f = instance_texel(7);
 
+  float z0 = start_depth - dot(row_f, r);
+  vec3 f = instance_texel(2) * m;
+  s += (z0 - start_depth) * f;
+
   slot0 = words(s, meta);
-  slot1 = words(instance_texel(2) * m, (meta & kPieces) != 0u ? uint(at) : 0u);
+  slot1 = words(f, (meta & kPieces) != 0u ? uint(at) : 0u);
   slot2 = words(instance_texel(3) * m, item.w);
   slot3 = words(instance_texel(4) * m, floatBitsToUint(rounding));
   slot4 = floatBitsToUint(bend);
@@ -61,6 +65,6 @@ void main() {
   slot7 = floatBitsToUint(c23);
   slot8 = words(row_x * m, floatBitsToUint(-dot(row_x, r)));
   slot9 = words(row_y * m, floatBitsToUint(-dot(row_y, r)));
-  slot10 = words(row_f * m, floatBitsToUint(start_depth - dot(row_f, r)));
-  slot11 = uvec4(item.z, floatBitsToUint(lo.w), cubic, 0u);
+  slot10 = words(row_f * m, floatBitsToUint(z0));
+  slot11 = uvec4(item.z, floatBitsToUint(lo.w), cubic, floatBitsToUint(z0));
 }

@@ -6,15 +6,20 @@ vec3 quadric_gradient(vec4 bend, float c, vec3 p) {
   return vec3(-bend.x * p.x - bend.z * p.z, -bend.y * p.y - bend.w * p.z, 1.0 - bend.z * p.x - bend.w * p.y - c * p.z);
 }
 
-// The two values of t at which o + t d meets F, with o near the DP: C / q and q / A, free of cancellation. False if there are none.
-// F falls along the ray at the first if B < 0, and then rises at the second; and the other way round.
-bool quadric_roots(vec4 bend, float c, vec3 o, vec3 d, out float first, out float second, out float slope) {
-  float A = quadric_form(bend, c, d), B = dot(quadric_gradient(bend, c, o), d), C = o.z + quadric_form(bend, c, o);
-  float disc = B * B - 4.0 * A * C;
-  slope = B;
-  if (!(disc >= 0.0)) return false;
-  float q = -0.5 * (B + (B < 0.0 ? -1.0 : 1.0) * sqrt(disc));
-  first = C / q;
-  second = q / A;
-  return true;
+// The ray o + t d, with o near the DP, meets F = 0 at t = C / q and at t = q / A: free of cancellation. F falls along the ray at the
+// first if the slope is negative, and then rises at the second; and the other way round.
+struct Roots {
+  float A, C, q, slope;
+  float discriminant;  // negative, or no number: the ray misses
+};
+
+Roots quadric_roots(vec4 bend, float c, vec3 o, vec3 d) {
+  Roots r;
+  r.A = quadric_form(bend, c, d);
+  r.C = o.z + quadric_form(bend, c, o);
+  r.slope = dot(quadric_gradient(bend, c, o), d);
+  r.discriminant = r.slope * r.slope - 4.0 * r.A * r.C;
+  float root = sqrt(max(r.discriminant, 0.0));
+  r.q = -0.5 * (r.slope + (r.slope < 0.0 ? -root : root));
+  return r;
 }

@@ -29,17 +29,17 @@ Surface surface_at(uint number, vec2 at) {
   float c = uintBitsToFloat(t5.x);
   uint meta = t0.w;
 
-  vec3 across = at.x * p + at.y * q, o = s + start * across, d = f + spread * across;
-  float t_near = -dot(o, d) / dot(d, d), first, second, slope;
-  o += t_near * d;
-  if (!quadric_roots(bend, c, o, d, first, second, slope)) first = second = 0.0;
-  float t = (number & kSecondRoot) != 0u ? second : first;
+  uvec4 t11 = texelFetch(slots, slot * kSlotTexels + 11);
+  float z0 = uintBitsToFloat(t11.w);
+  vec3 across = at.x * p + at.y * q, o = s + reach(z0) * across, d = f + spread * across;
+  Roots roots = quadric_roots(bend, c, o, d);
+  float t = (number & kSecondRoot) != 0u ? roots.q / roots.A : roots.C / roots.q;
   vec3 x = o + t * d, g = quadric_gradient(bend, c, x);
 
   vec3 right = p * axis_scale.x, up = q * axis_scale.y;
   vec3 back = spread * (axis_offset.x * right + axis_offset.y * up) - f;
   vec3 normal_form = g;
-  uint cubic = texelFetch(slots, slot * kSlotTexels + 11).z;
+  uint cubic = t11.z;
   if (cubic != 0u) {
     // The normal's own third-order terms: ∇F − ∇C.
     vec4 k = heap_texel(int(cubic));
@@ -52,13 +52,10 @@ Surface surface_at(uint number, vec2 at) {
   Surface result;
   vec3 n = gradient / size;
   result.normal = outside * n;
-  result.depth = start_depth + t_near + t;
+  result.depth = z0 + t;
   result.face = t5.w;
   result.color = t2.w;
-  result.primitive = 0u;
-#ifdef NUMBERS
-  result.primitive = texelFetch(slots, slot * kSlotTexels + 11).x;
-#endif
+  result.primitive = t11.x;
   result.curvature = vec2(0.0);
   result.direction = vec3(0.0);
 #ifdef CURVES
