@@ -18,7 +18,8 @@ namespace {
 
 std::uint64_t physical_memory() {
   const long pages = ::sysconf(_SC_PHYS_PAGES), size = ::sysconf(_SC_PAGE_SIZE);
-  return pages > 0 && size > 0 ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(size) : 8ull << 30;
+  return pages > 0 && size > 0 ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(size)
+                               : 8ull << 30;
 }
 
 std::string number(double value) {
@@ -30,7 +31,8 @@ std::string number(double value) {
 Status check_options(const ImportOptions& options) {
   static constexpr std::array kUnits{"mm", "cm", "m", "inch", "ft", "um"};
   if (std::find(kUnits.begin(), kUnits.end(), options.assumed_unit) == kUnits.end())
-    return {StatusCode::invalid_argument, "unknown unit '" + options.assumed_unit + "': mm, cm, m, inch, ft, um"};
+    return {StatusCode::invalid_argument,
+            "unknown unit '" + options.assumed_unit + "': mm, cm, m, inch, ft, um"};
   if (!(options.time_limit_seconds >= 0)) return {StatusCode::invalid_argument, "the time limit is negative"};
   if (!(options.mesh_deflection >= 0 && options.mesh_deflection < 1))
     return {StatusCode::invalid_argument, "the mesh deflection must lie in [0, 1)"};
@@ -49,7 +51,8 @@ Status check_kind(const std::string& path) {
 }
 
 ReaderCommand make_command(const std::string& path, const ImportOptions& options, std::string reader) {
-  // An unlimited reader could take the machine down with it; most of the memory is limit enough for real files.
+  // An unlimited reader could take the machine down with it; most of the memory is limit enough for real
+  // files.
   const std::uint64_t memory =
       options.memory_limit_bytes > 0 ? options.memory_limit_bytes : physical_memory() / 10 * 9;
   ReaderCommand command;

@@ -28,7 +28,8 @@ bool is_step(std::string_view text) {
   return text.starts_with("ISO-10303-21");
 }
 
-// Fixed-form IGES: lines of 80 columns whose 73rd is the section's letter, S first, followed by a sequence number.
+// Fixed-form IGES: lines of 80 columns whose 73rd is the section's letter, S first, followed by a sequence
+// number.
 bool is_iges(std::string_view text) {
   bool seen_global = false;
   for (int line = 0; line < 40 && !text.empty(); ++line) {
@@ -73,14 +74,21 @@ FileKind find_file_kind(std::span<const char> head) {
 
 std::string_view kind_name(FileKind kind) {
   switch (kind) {
-    case FileKind::step: return "STEP";
-    case FileKind::iges: return "IGES";
+    case FileKind::step:
+      return "STEP";
+    case FileKind::iges:
+      return "IGES";
     case FileKind::brep_text:
-    case FileKind::brep_binary: return "BREP";
-    case FileKind::zip: return "FCStd";
-    case FileKind::gzip: return "gzip";
-    case FileKind::empty: return "empty";
-    case FileKind::unknown: break;
+    case FileKind::brep_binary:
+      return "BREP";
+    case FileKind::zip:
+      return "FCStd";
+    case FileKind::gzip:
+      return "gzip";
+    case FileKind::empty:
+      return "empty";
+    case FileKind::unknown:
+      break;
   }
   return "unknown";
 }

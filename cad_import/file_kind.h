@@ -20,8 +20,8 @@ FileKind find_file_kind(std::span<const char> head);
 /// "STEP", "IGES", "BREP", … for messages and Model::format.
 std::string_view kind_name(FileKind kind);
 
-/// The kind of a file on disk. Fails with one line where it is missing, no regular file, or cannot be read; an
-/// unknown or empty file is a kind, not a failure.
+/// The kind of a file on disk. Fails with one line where it is missing, no regular file, or cannot be read;
+/// an unknown or empty file is a kind, not a failure.
 Result<FileKind> file_kind(const std::string& path);
 
 }  // namespace dupin

@@ -8,26 +8,27 @@
 namespace dupin {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "both ends run on one machine; only its order is used");
+static_assert(std::endian::native == std::endian::little,
+              "both ends run on one machine; only its order is used");
 
 constexpr char kMagic[8] = {'D', 'U', 'P', 'I', 'N', 'M', 'D', 'L'};
 
-// ---- writing -------------------------------------------------------------------------------------------------
+// ---- writing
+// -------------------------------------------------------------------------------------------------
 
 class Writer {
  public:
   template <class T>
-    requires std::is_trivially_copyable_v<T>
-  void pod(const T& value) {
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
-  }
+  requires std::is_trivially_copyable_v<T>
+  void pod(const T& value) { bytes_.append(reinterpret_cast<const char*>(&value), sizeof value); }
   void boolean(bool value) { pod<std::uint8_t>(value ? 1 : 0); }
   void count(std::size_t n) { pod<std::uint64_t>(n); }
   template <class T>
-    requires std::is_trivially_copyable_v<T>
+  requires std::is_trivially_copyable_v<T>
   void pods(const std::vector<T>& values) {
     count(values.size());
-    if (!values.empty()) bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+    if (!values.empty())
+      bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
   }
   void text(const std::string& value) {
     count(value.size());
@@ -68,7 +69,7 @@ void write_geometry(Writer& out, const OffsetCurveOf<V>& c) {
   out.pod(c.reference);
 }
 template <class T>
-  requires std::is_trivially_copyable_v<T>
+requires std::is_trivially_copyable_v<T>
 void write_geometry(Writer& out, const T& c) {
   out.pod(c);
 }
@@ -132,7 +133,8 @@ void write(Writer& out, const Trim& trim) {
 void write(Writer& out, const Face& face) {
   out.pod(face.surface);
   out.boolean(face.reversed);
-  write_list(out, face.loops, [&](const Loop& loop) { write_list(out, loop, [&](const Trim& t) { write(out, t); }); });
+  write_list(out, face.loops,
+             [&](const Loop& loop) { write_list(out, loop, [&](const Trim& t) { write(out, t); }); });
   out.pod(face.uv_box);
   out.pod(face.tolerance);
   write(out, face.color);
@@ -165,7 +167,8 @@ void write(Writer& out, const Instance& instance) {
   out.text(instance.name);
 }
 
-// ---- reading -------------------------------------------------------------------------------------------------
+// ---- reading
+// -------------------------------------------------------------------------------------------------
 
 // After the first failure every read returns a zero and no list grows, so the recursion unwinds by itself.
 class Reader {
@@ -176,8 +179,7 @@ class Reader {
   void fail() { failed_ = true, left_ = {}; }
 
   template <class T>
-    requires std::is_trivially_copyable_v<T>
-  T pod() {
+  requires std::is_trivially_copyable_v<T> T pod() {
     T value{};
     if (left_.size() < sizeof value) return fail(), value;
     std::memcpy(&value, left_.data(), sizeof value);
@@ -196,7 +198,7 @@ class Reader {
     return static_cast<std::size_t>(n);
   }
   template <class T>
-    requires std::is_trivially_copyable_v<T>
+  requires std::is_trivially_copyable_v<T>
   void pods(std::vector<T>& values) {
     const std::size_t n = count(sizeof(T));
     values.resize(n);
@@ -214,7 +216,8 @@ class Reader {
   bool failed_ = false;
 };
 
-// The least an item takes in the stream is below its size in memory for small items, so lists grow as they are read.
+// The least an item takes in the stream is below its size in memory for small items, so lists grow as they
+// are read.
 template <class T, class F>
 void read_list(Reader& in, std::vector<T>& list, std::size_t item_bytes, F&& item) {
   const std::size_t n = in.count(item_bytes);
@@ -246,7 +249,7 @@ void read_geometry(Reader& in, OffsetCurveOf<V>& c, int nesting) {
   c.reference = in.pod<Vec3>();
 }
 template <class T>
-  requires std::is_trivially_copyable_v<T>
+requires std::is_trivially_copyable_v<T>
 void read_geometry(Reader& in, T& c, int) {
   c = in.pod<T>();
 }
@@ -361,14 +364,16 @@ Status damaged(const char* what) {
 
 Status check_header(std::span<const char> bytes) {
   if (bytes.size() < kModelStreamHeaderBytes) return damaged("it is too short");
-  if (std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0) return damaged("it does not begin as a model does");
+  if (std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0)
+    return damaged("it does not begin as a model does");
   std::uint64_t version, length, checksum;
   std::memcpy(&version, bytes.data() + 8, 8);
   std::memcpy(&length, bytes.data() + 16, 8);
   std::memcpy(&checksum, bytes.data() + 24, 8);
   if (version != kModelStreamVersion) return damaged("it is of another version");
   if (length != bytes.size() - kModelStreamHeaderBytes) return damaged("its length is wrong");
-  if (checksum != stream_checksum(bytes.subspan(kModelStreamHeaderBytes))) return damaged("its checksum is wrong");
+  if (checksum != stream_checksum(bytes.subspan(kModelStreamHeaderBytes)))
+    return damaged("its checksum is wrong");
   return {};
 }
 

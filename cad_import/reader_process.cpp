@@ -30,7 +30,9 @@ constexpr int kPollMilliseconds = 50;
 constexpr double kExitGraceSeconds = 2;  // between the end of the answer and the end of the process
 constexpr std::size_t kKeptErrorBytes = 4096;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 class Descriptor {
  public:
@@ -76,7 +78,8 @@ std::string signal_name(int number) {
 }
 
 std::string last_line(std::string_view text) {
-  while (!text.empty() && (text.back() == '\n' || text.back() == '\r' || text.back() == ' ')) text.remove_suffix(1);
+  while (!text.empty() && (text.back() == '\n' || text.back() == '\r' || text.back() == ' '))
+    text.remove_suffix(1);
   const std::size_t start = text.find_last_of('\n');
   std::string line(start == text.npos ? text : text.substr(start + 1));
   for (char& c : line)
@@ -165,7 +168,8 @@ class Watch {
       if (n == 0 || (n < 0 && errno != EAGAIN)) errors_.close();
       if (n <= 0) return;
       error_text_.append(buffer, static_cast<std::size_t>(n));
-      if (error_text_.size() > 2 * kKeptErrorBytes) error_text_.erase(0, error_text_.size() - kKeptErrorBytes);
+      if (error_text_.size() > 2 * kKeptErrorBytes)
+        error_text_.erase(0, error_text_.size() - kKeptErrorBytes);
     }
   }
 
@@ -239,7 +243,8 @@ class Watch {
     while (reap(WNOHANG, status) == 0 && seconds_since(closed) < kExitGraceSeconds)
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     if (errors_.open()) drain_errors();
-    if (child_ > 0) return failure(StatusCode::unreadable, "the CAD reader closed its answer and hung" + in_stage());
+    if (child_ > 0)
+      return failure(StatusCode::unreadable, "the CAD reader closed its answer and hung" + in_stage());
     if (reaped_ && WIFSIGNALED(status)) {
       if (WTERMSIG(status) == SIGXCPU)
         return failure(StatusCode::limit, "reading took longer than the time limit" + in_stage());
@@ -292,11 +297,15 @@ class Watch {
   double fraction_ = 0;
 };
 
-bool is_program(const std::string& path) { return !path.empty() && ::access(path.c_str(), X_OK) == 0; }
+bool is_program(const std::string& path) {
+  return !path.empty() && ::access(path.c_str(), X_OK) == 0;
+}
 
 }  // namespace
 
-Result<std::string> run_reader(const ReaderCommand& command) { return Watch(command).run(); }
+Result<std::string> run_reader(const ReaderCommand& command) {
+  return Watch(command).run();
+}
 
 Result<std::string> find_reader(const std::string& asked) {
   const char* from_environment = std::getenv("DUPIN_READER");
@@ -313,7 +322,8 @@ Result<std::string> find_reader(const std::string& asked) {
         std::filesystem::path(DUPIN_INSTALLED_READER)})
     if (is_program(place)) return place.lexically_normal().string();
   return {StatusCode::unreadable,
-          "the CAD reader (dupin-reader) was not found; set DUPIN_READER or install it to " DUPIN_INSTALLED_READER};
+          "the CAD reader (dupin-reader) was not found; set DUPIN_READER or install it "
+          "to " DUPIN_INSTALLED_READER};
 }
 
 }  // namespace dupin

@@ -1,4 +1,5 @@
-// Running the reading process: a child with limits, watched until it has answered, failed, crashed or run out of time.
+// Running the reading process: a child with limits, watched until it has answered, failed, crashed or run out
+// of time.
 #ifndef DUPIN_CAD_IMPORT_READER_PROCESS_H
 #define DUPIN_CAD_IMPORT_READER_PROCESS_H
 
@@ -23,7 +24,8 @@ struct ReaderCommand {
 /// started are gone when this returns.
 Result<std::string> run_reader(const ReaderCommand& command);
 
-/// The reading program's path: `asked` if not empty, else $DUPIN_READER, then beside the running program, then in
+/// The reading program's path: `asked` if not empty, else $DUPIN_READER, then beside the running program,
+/// then in
 /// ../libexec/dupin from there, then in a build tree, then where the library was installed to.
 Result<std::string> find_reader(const std::string& asked);
 

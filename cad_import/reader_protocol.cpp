@@ -38,9 +38,12 @@ bool send_stage(int fd, std::string_view stage, double fraction) {
 }
 
 bool send_failure(int fd, const Status& status) {
-  return send(fd, FrameKind::failure, number_and_text(static_cast<std::uint32_t>(status.code), status.message));
+  return send(fd, FrameKind::failure,
+              number_and_text(static_cast<std::uint32_t>(status.code), status.message));
 }
 
-bool send_model(int fd, std::span<const char> stream) { return send(fd, FrameKind::model, stream); }
+bool send_model(int fd, std::span<const char> stream) {
+  return send(fd, FrameKind::model, stream);
+}
 
 }  // namespace dupin

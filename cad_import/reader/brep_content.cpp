@@ -22,8 +22,10 @@ TopoDS_Shape read_brep_content(std::string content) {
   in.exceptions(std::ios::eofbit | std::ios::failbit | std::ios::badbit);
   TopoDS_Shape shape;
   try {
-    if (binary) BinTools::Read(shape, in);
-    else BRepTools::Read(shape, in, BRep_Builder());
+    if (binary)
+      BinTools::Read(shape, in);
+    else
+      BRepTools::Read(shape, in, BRep_Builder());
   } catch (const std::ios_base::failure&) {
     return {};
   } catch (const Standard_Failure&) {

@@ -8,8 +8,8 @@
 
 namespace dupin::reader {
 
-/// The shape in a BREP file's bytes, text or binary; null if they are damaged. OCCT's own reading of a file goes round in
-/// circles for ever where the file ends too early; this ends.
+/// The shape in a BREP file's bytes, text or binary; null if they are damaged. OCCT's own reading of a file
+/// goes round in circles for ever where the file ends too early; this ends.
 TopoDS_Shape read_brep_content(std::string content);
 
 }  // namespace dupin::reader

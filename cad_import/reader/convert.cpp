@@ -55,7 +55,8 @@ class Conversion {
     }
     add_lone_faces();
     finish_skipped();
-    if (free_curves_ > 0) model_.notes.push_back(std::to_string(free_curves_) + " curves that bound no face are not drawn");
+    if (free_curves_ > 0)
+      model_.notes.push_back(std::to_string(free_curves_) + " curves that bound no face are not drawn");
     if (mesh_.deflection > 0) add_meshes();
     return std::move(model_);
   }
@@ -91,7 +92,8 @@ class Conversion {
 
   std::size_t built_of(const SourceItem& item, const Piece& piece) {
     PartSource source = describe(item, piece);
-    auto& known = known_[{piece.shape.TShape().get(), static_cast<int>(piece.shape.Orientation()), piece.loose}];
+    auto& known =
+        known_[{piece.shape.TShape().get(), static_cast<int>(piece.shape.Orientation()), piece.loose}];
     for (const Known& k : known)
       if (same_look(k.source, source)) return k.built;
     const std::size_t index = build(source);
@@ -103,7 +105,8 @@ class Conversion {
     BuiltPart made = build_part(source);
     Built built;
     if (!made.part.faces.empty()) built.part = static_cast<std::uint32_t>(model_.parts.size());
-    const std::string name = source.name.empty() ? "part " + std::to_string(model_.parts.size() + 1) : source.name;
+    const std::string name =
+        source.name.empty() ? "part " + std::to_string(model_.parts.size() + 1) : source.name;
     for (const std::string& n : made.notes) model_.notes.push_back(name + ": " + n);
     if (built.part) model_.parts.push_back(std::move(made.part));
     built.faces = std::move(made.shapes);
@@ -112,15 +115,16 @@ class Conversion {
     return built_.size() - 1;
   }
 
-  // Files without topology, IGES above all, list each face as a shape of its own: thousands of parts of one face, which
-  // are one part to everything that comes after.
+  // Files without topology, IGES above all, list each face as a shape of its own: thousands of parts of one
+  // face, which are one part to everything that comes after.
   void find_lone_faces() {
     std::map<const void*, int> uses;
     for (const SourceItem& item : document_.items) ++uses[item.shape.TShape().get()];
     std::size_t count = 0;
     for (const SourceItem& item : document_.items) {
       TopExp_Explorer face(item.shape, TopAbs_FACE);
-      bool lone = face.More() && uses[item.shape.TShape().get()] == 1 && item.placement == document_.items[0].placement;
+      bool lone = face.More() && uses[item.shape.TShape().get()] == 1 &&
+                  item.placement == document_.items[0].placement;
       if (lone) face.Next(), lone = !face.More() && !TopExp_Explorer(item.shape, TopAbs_SOLID).More();
       lone_.push_back(lone);
       count += lone;

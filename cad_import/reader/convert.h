@@ -7,8 +7,8 @@
 
 namespace dupin::reader {
 
-/// Splits every item into pieces (its solids; its other faces together), stores each distinct piece once as a part, and
-/// tessellates them if that was asked for.
+/// Splits every item into pieces (its solids; its other faces together), stores each distinct piece once as a
+/// part, and tessellates them if that was asked for.
 Model convert(const SourceDocument& document, const MeshOptions& mesh, const Stage& stage);
 
 }  // namespace dupin::reader

@@ -6,13 +6,13 @@
 namespace dupin::reader {
 namespace {
 
-constexpr int kGrid = 16;           // points a side of the search for a projection's beginning
+constexpr int kGrid = 16;  // points a side of the search for a projection's beginning
 constexpr int kNewtonSteps = 30;
 constexpr int kFirstPieces = 8;
-constexpr int kMaxDepth = 10;       // halvings of a first piece
+constexpr int kMaxDepth = 10;  // halvings of a first piece
 constexpr std::size_t kMaxPieces = 600;
 constexpr double kShortestStep = 1e-5;  // of a first piece
-constexpr int kChecksPerPiece = 3;  // inside each piece
+constexpr int kChecksPerPiece = 3;      // inside each piece
 
 template <class V>
 struct Node {
@@ -51,7 +51,8 @@ struct Refinement {
   std::function<double(double, const V&)> error;           ///< how far a point of the cubic is off at t
   std::vector<Node<V>> nodes;
 
-  // Halves [a, b] until the cubic is within the tolerance where it is checked, or no more halving helps; appends b.
+  // Halves [a, b] until the cubic is within the tolerance where it is checked, or no more halving helps;
+  // appends b.
   void run(const Node<V>& a, const Node<V>& b, int depth) {
     double worst = 0;
     for (int i = 1; i <= kChecksPerPiece; ++i) {
@@ -86,7 +87,8 @@ std::vector<double> first_parameters(std::vector<double> stops, double t0, doubl
   return result;
 }
 
-// d with |Su·d.x + Sv·d.y - w| smallest; the damping keeps it bounded where the partials are parallel or vanish.
+// d with |Su·d.x + Sv·d.y - w| smallest; the damping keeps it bounded where the partials are parallel or
+// vanish.
 Vec2 tangent_parameters(const SurfaceJet& s, const Vec3& w) {
   const double e = dot(s.pu, s.pu), f = dot(s.pu, s.pv), g = dot(s.pv, s.pv);
   const double a = e + 1e-14 * g, c = g + 1e-14 * e, det = a * c - f * f;
@@ -132,7 +134,8 @@ Vec2 newton(const Surface& surface, const Box2& domain, const Vec3& p, Vec2 q) {
       damping = std::max(1e-12, damping * 10);
       continue;
     }
-    const Vec2 next = clamp_to(surface, domain, {q.x - (c * gu - b * gv) / det, q.y - (a * gv - b * gu) / det});
+    const Vec2 next =
+        clamp_to(surface, domain, {q.x - (c * gu - b * gv) / det, q.y - (a * gv - b * gu) / det});
     const SurfaceJet moved = evaluate(surface, next.x, next.y, 2);
     const double d = distance(moved.p, p);
     if (!(d <= best)) {
@@ -227,8 +230,11 @@ std::optional<Curve2> fit_pcurve(const Surface& surface, const Box2& domain, con
       const Vec2 guess = clamp_to(surface, domain, at.point + at.tangent * (t - at.t));
       const Node<Vec2> ahead = node_near(t, &guess), stay = node_near(t, &at.point);
       const Vec3 p = point_at(curve, t);
-      const auto miss = [&](const Node<Vec2>& n) { return distance(point_at(surface, n.point.x, n.point.y), p); };
-      const bool extrapolated = !(miss(stay) < 0.5 * miss(ahead) - 1e-12) && !too_far(surface, ahead.point - at.point);
+      const auto miss = [&](const Node<Vec2>& n) {
+        return distance(point_at(surface, n.point.x, n.point.y), p);
+      };
+      const bool extrapolated =
+          !(miss(stay) < 0.5 * miss(ahead) - 1e-12) && !too_far(surface, ahead.point - at.point);
       const Node<Vec2>& next = extrapolated ? ahead : stay;
       if (too_far(surface, next.point - at.point) && step > kShortestStep) {
         step /= 4;
@@ -244,7 +250,8 @@ std::optional<Curve2> fit_pcurve(const Surface& surface, const Box2& domain, con
 
   Refinement<Vec2> fit;
   fit.tolerance = tolerance;
-  // Along the surface from where the point should be. A tenth of the curve's own height above the surface does not matter.
+  // Along the surface from where the point should be. A tenth of the curve's own height above the surface
+  // does not matter.
   fit.error = [&](double t, const Vec2& q) {
     const Vec3 p = point_at(curve, t), on = point_at(surface, q.x, q.y);
     if (distance(on, p) <= tolerance) return 0.0;

@@ -11,9 +11,12 @@ template <class V, class F>
 void for_each_position(CurveOf<V>& curve, F&& move) {
   std::visit(
       [&]<class T>(T& c) {
-        if constexpr (std::is_same_v<T, LineOf<V>>) move(c.origin);
-        else if constexpr (std::is_same_v<T, ParabolaOf<V>>) move(c.vertex);
-        else if constexpr (std::is_same_v<T, BsplineOf<V>>) std::for_each(c.poles.begin(), c.poles.end(), move);
+        if constexpr (std::is_same_v<T, LineOf<V>>)
+          move(c.origin);
+        else if constexpr (std::is_same_v<T, ParabolaOf<V>>)
+          move(c.vertex);
+        else if constexpr (std::is_same_v<T, BsplineOf<V>>)
+          std::for_each(c.poles.begin(), c.poles.end(), move);
         else if constexpr (std::is_same_v<T, OffsetCurveOf<V>>) {
           auto base = std::make_shared<CurveOf<V>>(*c.base);
           for_each_position(*base, move);
@@ -75,7 +78,8 @@ std::optional<Curve2> in_plane(const Curve3& curve, const Frame3& plane) {
     return Vec2{q.x, q.y};
   };
   if (const auto* line = std::get_if<LineOf<Vec3>>(&curve.geometry))
-    return Curve2{LineOf<Vec2>{point(line->origin), {dot(line->direction, plane.x), dot(line->direction, plane.y)}}};
+    return Curve2{
+        LineOf<Vec2>{point(line->origin), {dot(line->direction, plane.x), dot(line->direction, plane.y)}}};
   if (const auto* spline = std::get_if<Bspline3>(&curve.geometry)) {
     Bspline2 flat{spline->degree, spline->knots, {}, spline->weights, spline->periodic};
     flat.poles.reserve(spline->poles.size());

@@ -73,10 +73,18 @@ struct Space3 {
   static Vec3 reference(const Offset& c) { return to_vec(c.Direction().XYZ()); }
 };
 
-auto coordinates(const gp_Pnt& p) { return to_vec(p.XYZ()); }
-auto coordinates(const gp_Pnt2d& p) { return to_vec(p.XY()); }
-auto coordinates(const gp_Dir& d) { return to_vec(d.XYZ()); }
-auto coordinates(const gp_Dir2d& d) { return to_vec(d.XY()); }
+auto coordinates(const gp_Pnt& p) {
+  return to_vec(p.XYZ());
+}
+auto coordinates(const gp_Pnt2d& p) {
+  return to_vec(p.XY());
+}
+auto coordinates(const gp_Dir& d) {
+  return to_vec(d.XYZ());
+}
+auto coordinates(const gp_Dir2d& d) {
+  return to_vec(d.XY());
+}
 
 template <class D>
 BsplineOf<typename D::V> bezier(const typename D::Bezier& c) {
@@ -109,7 +117,8 @@ BsplineOf<typename D::V> bspline(const typename D::Bspline& c) {
 
 template <class T, class Any>
 const T* as(const Any& geometry) {
-  return geometry->DynamicType() == T::get_type_descriptor() ? static_cast<const T*>(geometry.get()) : nullptr;
+  return geometry->DynamicType() == T::get_type_descriptor() ? static_cast<const T*>(geometry.get())
+                                                             : nullptr;
 }
 
 template <class D, class HandleType>
@@ -147,14 +156,19 @@ std::optional<CurveOf<typename D::V>> convert(const HandleType& curve) {
   if (const auto* c = as<typename D::Offset>(curve)) {
     auto base = convert<D>(c->BasisCurve());
     if (!base) return std::nullopt;
-    return Result{OffsetCurveOf<V>{std::make_shared<const Result>(std::move(*base)), c->Offset(), D::reference(*c)}};
+    return Result{
+        OffsetCurveOf<V>{std::make_shared<const Result>(std::move(*base)), c->Offset(), D::reference(*c)}};
   }
   return std::nullopt;
 }
 
 }  // namespace
 
-std::optional<Curve2> to_curve(const Handle(Geom2d_Curve) & curve) { return convert<Plane2>(curve); }
-std::optional<Curve3> to_curve(const Handle(Geom_Curve) & curve) { return convert<Space3>(curve); }
+std::optional<Curve2> to_curve(const Handle(Geom2d_Curve) & curve) {
+  return convert<Plane2>(curve);
+}
+std::optional<Curve3> to_curve(const Handle(Geom_Curve) & curve) {
+  return convert<Space3>(curve);
+}
 
 }  // namespace dupin::reader

@@ -16,14 +16,16 @@ double largest_between(F&& f, double a, double c) {
   constexpr double kGolden = 0.6180339887498949;
   double x1 = c - kGolden * (c - a), x2 = a + kGolden * (c - a), f1 = f(x1), f2 = f(x2);
   for (int i = 0; i < 60 && c - a > 1e-9 * (std::abs(a) + std::abs(c)); ++i) {
-    if (f1 > f2) c = x2, x2 = x1, f2 = f1, x1 = c - kGolden * (c - a), f1 = f(x1);
-    else a = x1, x1 = x2, f1 = f2, x2 = a + kGolden * (c - a), f2 = f(x2);
+    if (f1 > f2)
+      c = x2, x2 = x1, f2 = f1, x1 = c - kGolden * (c - a), f1 = f(x1);
+    else
+      a = x1, x1 = x2, f1 = f2, x2 = a + kGolden * (c - a), f2 = f(x2);
   }
   return std::max(f1, f2);
 }
 
-/// Calls add(point) with points whose box contains the curve over [t0, t1] to within rounding: samples of each smooth piece, and
-/// between them the extrema of each coordinate.
+/// Calls add(point) with points whose box contains the curve over [t0, t1] to within rounding: samples of
+/// each smooth piece, and between them the extrema of each coordinate.
 template <int kDimension, class V, class F>
 void for_each_extremum(const CurveOf<V>& curve, double t0, double t1, F&& add) {
   if (std::holds_alternative<LineOf<V>>(curve.geometry)) {
@@ -46,7 +48,8 @@ void for_each_extremum(const CurveOf<V>& curve, double t0, double t1, F&& add) {
           const double here = sign * p[i][axis];
           if (!(here > sign * p[i - 1][axis] && here >= sign * p[i + 1][axis])) continue;
           V q = p[i];
-          q[axis] = sign * largest_between([&](double t) { return sign * point_at(curve, t)[axis]; }, at(i - 1), at(i + 1));
+          q[axis] = sign * largest_between([&](double t) { return sign * point_at(curve, t)[axis]; },
+                                           at(i - 1), at(i + 1));
           add(q);
         }
   }

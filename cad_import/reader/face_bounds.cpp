@@ -13,9 +13,15 @@ namespace {
 struct Range {
   double lo, hi;
 };
-Range operator+(Range a, Range b) { return {a.lo + b.lo, a.hi + b.hi}; }
-Range scaled(Range a, double s) { return s >= 0 ? Range{a.lo * s, a.hi * s} : Range{a.hi * s, a.lo * s}; }
-Range join(Range a, Range b) { return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)}; }
+Range operator+(Range a, Range b) {
+  return {a.lo + b.lo, a.hi + b.hi};
+}
+Range scaled(Range a, double s) {
+  return s >= 0 ? Range{a.lo * s, a.hi * s} : Range{a.hi * s, a.lo * s};
+}
+Range join(Range a, Range b) {
+  return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)};
+}
 
 // Of a·cos t + b·sin t over [t0, t1].
 Range wave(double a, double b, double t0, double t1) {
@@ -76,16 +82,21 @@ Box3 ring_bounds(const Frame3& frame, double major, double minor, const Box2& uv
     return join(arc(c.lo), arc(c.hi));
   });
 }
-Box3 bounds(const Sphere& s, const Box2& uv) { return ring_bounds(s.frame, 0, s.radius, uv); }
-Box3 bounds(const Torus& s, const Box2& uv) { return ring_bounds(s.frame, s.major, s.minor, uv); }
+Box3 bounds(const Sphere& s, const Box2& uv) {
+  return ring_bounds(s.frame, 0, s.radius, uv);
+}
+Box3 bounds(const Torus& s, const Box2& uv) {
+  return ring_bounds(s.frame, s.major, s.minor, uv);
+}
 
 // The poles that have a say over [lo, hi].
 std::pair<int, int> active(const std::vector<double>& knots, int degree, int count, bool periodic, double lo,
                            double hi) {
   if (periodic) return {0, count - 1};
   const auto span = [&](double t) {
-    return std::clamp<int>(static_cast<int>(std::upper_bound(knots.begin(), knots.end(), t) - knots.begin()) - 1,
-                           degree, count - 1);
+    return std::clamp<int>(
+        static_cast<int>(std::upper_bound(knots.begin(), knots.end(), t) - knots.begin()) - 1, degree,
+        count - 1);
   };
   return {span(lo) - degree, span(hi)};
 }
@@ -147,10 +158,13 @@ Box3 surface_bounds(const Surface& surface, const Box2& uv) {
 
 namespace {
 
-// On ruled surfaces, and planes, the face's extrema lie on its boundary: along a ruling a coordinate is linear.
+// On ruled surfaces, and planes, the face's extrema lie on its boundary: along a ruling a coordinate is
+// linear.
 bool is_ruled(const Surface& surface) {
-  return std::holds_alternative<Plane>(surface.geometry) || std::holds_alternative<Cylinder>(surface.geometry) ||
-         std::holds_alternative<Cone>(surface.geometry) || std::holds_alternative<Extrusion>(surface.geometry);
+  return std::holds_alternative<Plane>(surface.geometry) ||
+         std::holds_alternative<Cylinder>(surface.geometry) ||
+         std::holds_alternative<Cone>(surface.geometry) ||
+         std::holds_alternative<Extrusion>(surface.geometry);
 }
 
 Box3 boundary_bounds(const Part& part, const Face& face, const std::vector<Box3>& edge_boxes) {
@@ -173,7 +187,8 @@ void add_poles(const Frame3& frame, const Surface& surface, const Box2& uv, Box3
   constexpr double kPi = std::numbers::pi;
   const auto into = [](double t, double lo) { return t + std::ceil((lo - t) / (2 * kPi)) * 2 * kPi; };
   for (int k = 0; k < 3; ++k) {
-    const double turn = std::atan2(frame.y[k], frame.x[k]), rise = std::asin(std::clamp(frame.z[k], -1.0, 1.0));
+    const double turn = std::atan2(frame.y[k], frame.x[k]),
+                 rise = std::asin(std::clamp(frame.z[k], -1.0, 1.0));
     for (const double u : {into(turn, uv.lo.x), into(turn + kPi, uv.lo.x)})
       for (const double v0 : {rise, -rise, kPi - rise, kPi + rise}) {
         const double v = into(v0, uv.lo.y);
@@ -186,7 +201,9 @@ int cells_along(const Surface& surface, bool in_u, double lo, double hi) {
   int cells = 16;
   if (const auto* spline = std::get_if<BsplineSurface>(&surface.geometry)) {
     const auto& knots = in_u ? spline->knots_u : spline->knots_v;
-    cells = 2 * static_cast<int>(std::count_if(knots.begin(), knots.end(), [&](double k) { return k > lo && k < hi; }) + 1);
+    cells =
+        2 * static_cast<int>(
+                std::count_if(knots.begin(), knots.end(), [&](double k) { return k > lo && k < hi; }) + 1);
   }
   return std::clamp(cells, 16, 64);
 }
@@ -210,7 +227,8 @@ Box3 sampled_bounds(const Part& part, const Face& face) {
       const SurfaceJet s = evaluate(surface, q.x, q.y, 2);
       if (!is_finite(s.p)) continue;
       box.add(s.p);
-      const double bend = (hu * hu * length(s.puu) + 2 * hu * hv * length(s.puv) + hv * hv * length(s.pvv)) / 8;
+      const double bend =
+          (hu * hu * length(s.puu) + 2 * hu * hv * length(s.puv) + hv * hv * length(s.pvv)) / 8;
       if (std::isfinite(bend)) rise = std::max(rise, bend);
     }
   const Vec3 pad = Vec3{1, 1, 1} * rise;

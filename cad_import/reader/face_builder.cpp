@@ -17,7 +17,8 @@
 namespace dupin::reader {
 namespace {
 
-// A pcurve may leave its edge by this part of the piece's size before a better one is looked for: far below a pixel.
+// A pcurve may leave its edge by this part of the piece's size before a better one is looked for: far below a
+// pixel.
 constexpr double kAgreement = 1e-6;
 constexpr int kAllKnots = 100;  // no spline is as smooth
 // What a fitted pcurve may add.
@@ -50,7 +51,8 @@ class FaceBuilder {
       if (use) uses.push_back(std::move(*use));
     }
     if (uses.empty()) return;
-    WireLoops loops = assemble_loops(surface_, std::move(uses), std::max(result_.face.tolerance, kAgreement * size_));
+    WireLoops loops =
+        assemble_loops(surface_, std::move(uses), std::max(result_.face.tolerance, kAgreement * size_));
     result_.largest_gap = std::max(result_.largest_gap, loops.gap);
     if (loops.winding) result_.repair = "its boundary runs around the surface without a seam";
     for (auto& loop : loops.loops) loops_.push_back(std::move(loop));
@@ -77,7 +79,8 @@ class FaceBuilder {
     double deviation = pcurve && edge.curve ? deviation_of(*pcurve, edge) : 0;
     use.file_wrong = !(deviation <= kWrong * size_);
     if (use.file_wrong) file.reset();
-    if (edge.curve && (!pcurve || !(deviation <= kAgreement * size_))) refit(edge, stored.seam, pcurve, deviation);
+    if (edge.curve && (!pcurve || !(deviation <= kAgreement * size_)))
+      refit(edge, stored.seam, pcurve, deviation);
     if (!pcurve) {
       if (!edge.curve) return std::nullopt;  // a collapsed side: the loop bridges it
       return skip("an edge's curve could not be laid onto its surface"), std::nullopt;
@@ -123,7 +126,8 @@ class FaceBuilder {
   void refit(const Edge& edge, bool seam, std::optional<Curve2>& pcurve, double& deviation) {
     if (seam && pcurve) return;  // which side a projection would fall on is anyone's guess
     std::optional<Curve2> fitted;
-    if (const auto* plane = std::get_if<Plane>(&surface_.geometry)) fitted = in_plane(*edge.curve, plane->frame);
+    if (const auto* plane = std::get_if<Plane>(&surface_.geometry))
+      fitted = in_plane(*edge.curve, plane->frame);
     if (!fitted || (pcurve && !(deviation_of(*fitted, edge) < 0.5 * deviation))) {
       if (domain_.empty()) domain_ = search_domain(surface_, edges_, task_.wires);
       fitted = fit_pcurve(surface_, domain_, *edge.curve, edge.t0, edge.t1, kFit * size_);
@@ -140,9 +144,11 @@ class FaceBuilder {
     pcurve = std::move(fitted), deviation = reached;
   }
 
-  // Past a pole a projection may take the other way round than the file's curve, which then bounds another region.
+  // Past a pole a projection may take the other way round than the file's curve, which then bounds another
+  // region.
   bool passes_elsewhere(const Curve2& a, const Curve2& b, const Edge& edge) const {
-    const Vec2 d = point_at(a, edge.t1) - point_at(a, edge.t0) - (point_at(b, edge.t1) - point_at(b, edge.t0));
+    const Vec2 d =
+        point_at(a, edge.t1) - point_at(a, edge.t0) - (point_at(b, edge.t1) - point_at(b, edge.t0));
     const double turn_u = period_u(surface_), turn_v = period_v(surface_);
     return (turn_u > 0 && std::abs(d.x) > turn_u / 2) || (turn_v > 0 && std::abs(d.y) > turn_v / 2);
   }
@@ -205,8 +211,8 @@ class FaceBuilder {
     }
   }
 
-  // On an open surface a clockwise outer loop is a slip; on one that closes on itself it may be a hole whose natural
-  // boundary was left out.
+  // On an open surface a clockwise outer loop is a slip; on one that closes on itself it may be a hole whose
+  // natural boundary was left out.
   void turn_outer_loop() {
     if (loops_.size() == 1 && period_u(surface_) == 0 && period_v(surface_) == 0) {
       std::reverse(loops_[0].begin(), loops_[0].end());
@@ -226,8 +232,10 @@ class FaceBuilder {
       return;
     }
     const Box2 whole = domain(surface_);
-    if (period_u(surface_) == 0) box.lo.x = std::max(box.lo.x, whole.lo.x), box.hi.x = std::min(box.hi.x, whole.hi.x);
-    if (period_v(surface_) == 0) box.lo.y = std::max(box.lo.y, whole.lo.y), box.hi.y = std::min(box.hi.y, whole.hi.y);
+    if (period_u(surface_) == 0)
+      box.lo.x = std::max(box.lo.x, whole.lo.x), box.hi.x = std::min(box.hi.x, whole.hi.x);
+    if (period_v(surface_) == 0)
+      box.lo.y = std::max(box.lo.y, whole.lo.y), box.hi.y = std::min(box.hi.y, whole.hi.y);
     if (!(box.lo.x < box.hi.x && box.lo.y < box.hi.y)) skip("its boundary encloses nothing");
   }
 
@@ -242,7 +250,8 @@ class FaceBuilder {
 
 }  // namespace
 
-FaceResult build_face(const FaceTask& task, const Surface& surface, const std::vector<Edge>& edges, double size) {
+FaceResult build_face(const FaceTask& task, const Surface& surface, const std::vector<Edge>& edges,
+                      double size) {
   return FaceBuilder(task, surface, edges, size).run();
 }
 

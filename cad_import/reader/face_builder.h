@@ -15,16 +15,18 @@ struct FaceTask {
 };
 
 struct FaceResult {
-  Face face;                       ///< uses of kNewDegenerateEdge still to be numbered
-  std::optional<std::string> skip; ///< why the face cannot be had
+  Face face;                          ///< uses of kNewDegenerateEdge still to be numbered
+  std::optional<std::string> skip;    ///< why the face cannot be had
   std::optional<std::string> repair;  ///< why its wires need to be repaired first
   double largest_gap = 0;
-  std::vector<std::pair<std::uint32_t, double>> deviations;  ///< per edge, how far its pcurve lies from its curve
-  int refitted = 0;                ///< pcurves that were made from the edge's curve
+  std::vector<std::pair<std::uint32_t, double>>
+      deviations;    ///< per edge, how far its pcurve lies from its curve
+  int refitted = 0;  ///< pcurves that were made from the edge's curve
 };
 
 /// `edges` have their curves already; `size` is the piece's diagonal.
-FaceResult build_face(const FaceTask& task, const Surface& surface, const std::vector<Edge>& edges, double size);
+FaceResult build_face(const FaceTask& task, const Surface& surface, const std::vector<Edge>& edges,
+                      double size);
 
 }  // namespace dupin::reader
 

@@ -9,12 +9,14 @@
 namespace dupin::reader {
 namespace {
 
-double srgb_to_linear(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
+double srgb_to_linear(double c) {
+  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
 
 Affine3 to_affine(const pugi::xml_node& p) {
   const Vec3 t{p.attribute("Px").as_double(), p.attribute("Py").as_double(), p.attribute("Pz").as_double()};
-  double x = p.attribute("Q0").as_double(), y = p.attribute("Q1").as_double(), z = p.attribute("Q2").as_double(),
-         w = p.attribute("Q3").as_double(1);
+  double x = p.attribute("Q0").as_double(), y = p.attribute("Q1").as_double(),
+         z = p.attribute("Q2").as_double(), w = p.attribute("Q3").as_double(1);
   const double n = std::sqrt(x * x + y * y + z * z + w * w);
   if (!(n > 0)) return {{}, t};
   x /= n, y /= n, z /= n, w /= n;
@@ -60,34 +62,46 @@ void read_link_property(const std::string_view name, const pugi::xml_node& prope
 
 void read_property(const pugi::xml_node& property, FcObject& object) {
   const std::string_view name = property.attribute("name").as_string();
-  if (name == "Shape") object.shape_file = property.child("Part").attribute("file").as_string();
-  else if (name == "Label") object.label = property.child("String").attribute("value").as_string();
-  else if (name == "Visibility") object.visible = property.child("Bool").attribute("value").as_bool(true);
+  if (name == "Shape")
+    object.shape_file = property.child("Part").attribute("file").as_string();
+  else if (name == "Label")
+    object.label = property.child("String").attribute("value").as_string();
+  else if (name == "Visibility")
+    object.visible = property.child("Bool").attribute("value").as_bool(true);
   else if (name == "Placement" && property.child("PropertyPlacement")) {
     object.has_placement = true;
     object.placement = to_affine(property.child("PropertyPlacement"));
-  } else if (name == "Group") add_links(property, object.group);
-  else if (object.type.starts_with("App::Link")) read_link_property(name, property, object);
+  } else if (name == "Group")
+    add_links(property, object.group);
+  else if (object.type.starts_with("App::Link"))
+    read_link_property(name, property, object);
   else if (std::string_view(property.attribute("type").as_string()).find("Link") != std::string_view::npos)
     add_links(property, object.inputs);
 }
 
 void read_view_property(const pugi::xml_node& property, FcObject& object) {
   const std::string_view name = property.attribute("name").as_string();
-  if (name == "Visibility") object.visible = property.child("Bool").attribute("value").as_bool(true);
-  else if (name == "ShapeColor") object.color = unpack_color(property.child("PropertyColor").attribute("value").as_uint());
-  else if (name == "DiffuseColor") object.face_colors_file = property.child("ColorList").attribute("file").as_string();
-  else if (name == "Transparency") object.transparency = property.child("Integer").attribute("value").as_int() / 100.0;
+  if (name == "Visibility")
+    object.visible = property.child("Bool").attribute("value").as_bool(true);
+  else if (name == "ShapeColor")
+    object.color = unpack_color(property.child("PropertyColor").attribute("value").as_uint());
+  else if (name == "DiffuseColor")
+    object.face_colors_file = property.child("ColorList").attribute("file").as_string();
+  else if (name == "Transparency")
+    object.transparency = property.child("Integer").attribute("value").as_int() / 100.0;
   else if (name == "ShapeMaterial" && !object.color) {
     const pugi::xml_node material = property.child("PropertyMaterial");
-    if (material.attribute("diffuseColor")) object.color = unpack_color(material.attribute("diffuseColor").as_uint());
+    if (material.attribute("diffuseColor"))
+      object.color = unpack_color(material.attribute("diffuseColor").as_uint());
   }
 }
 
 }  // namespace
 
 Color unpack_color(std::uint32_t packed) {
-  const auto channel = [&](int shift) { return static_cast<float>(srgb_to_linear((packed >> shift & 255) / 255.0)); };
+  const auto channel = [&](int shift) {
+    return static_cast<float>(srgb_to_linear((packed >> shift & 255) / 255.0));
+  };
   return {channel(24), channel(16), channel(8), 1};
 }
 

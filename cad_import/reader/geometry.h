@@ -1,4 +1,5 @@
-// OCCT's curves and surfaces as ours. Parametrisations are the same, so parameter ranges carry over unchanged.
+// OCCT's curves and surfaces as ours. Parametrisations are the same, so parameter ranges carry over
+// unchanged.
 #ifndef DUPIN_CAD_IMPORT_READER_GEOMETRY_H
 #define DUPIN_CAD_IMPORT_READER_GEOMETRY_H
 
@@ -16,8 +17,12 @@
 
 namespace dupin::reader {
 
-inline Vec2 to_vec(const gp_XY& p) { return {p.X(), p.Y()}; }
-inline Vec3 to_vec(const gp_XYZ& p) { return {p.X(), p.Y(), p.Z()}; }
+inline Vec2 to_vec(const gp_XY& p) {
+  return {p.X(), p.Y()};
+}
+inline Vec3 to_vec(const gp_XYZ& p) {
+  return {p.X(), p.Y(), p.Z()};
+}
 Affine3 to_affine(const gp_Trsf& t);
 
 /// None for a kind that has no exact counterpart and no B-spline form either. Trimmed curves give their base.

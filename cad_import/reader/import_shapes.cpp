@@ -13,13 +13,19 @@ namespace {
 Result<SourceDocument> read_kind(FileKind kind, const std::string& path, const ReadOptions& options,
                                  const Stage& stage) {
   switch (kind) {
-    case FileKind::step: return read_step(path, stage);
-    case FileKind::iges: return read_iges(path, stage);
+    case FileKind::step:
+      return read_step(path, stage);
+    case FileKind::iges:
+      return read_iges(path, stage);
     case FileKind::brep_text:
-    case FileKind::brep_binary: return read_brep(path, options, stage);
-    case FileKind::zip: return read_fcstd(path, stage);
-    case FileKind::empty: return {StatusCode::unreadable, "the file is empty"};
-    default: return {StatusCode::unreadable, "not a STEP, IGES, BREP or FCStd file"};
+    case FileKind::brep_binary:
+      return read_brep(path, options, stage);
+    case FileKind::zip:
+      return read_fcstd(path, stage);
+    case FileKind::empty:
+      return {StatusCode::unreadable, "the file is empty"};
+    default:
+      return {StatusCode::unreadable, "not a STEP, IGES, BREP or FCStd file"};
   }
 }
 

@@ -8,7 +8,8 @@
 namespace dupin::reader {
 namespace {
 
-// Lengths in space of unit steps in u and v: the largest at the uses' ends, so that a pole does not hide a gap.
+// Lengths in space of unit steps in u and v: the largest at the uses' ends, so that a pole does not hide a
+// gap.
 struct Metric {
   double u = 0, v = 0;
   double operator()(Vec2 d) const { return u * std::abs(d.x) + v * std::abs(d.y); }
@@ -32,15 +33,19 @@ Vec2 extent_of(const std::vector<EdgeUse>& uses) {
   return box.size();
 }
 
-// Part of the loop's own extent that a gap may have without being filled in: slivers are thinner than any tolerance.
+// Part of the loop's own extent that a gap may have without being filled in: slivers are thinner than any
+// tolerance.
 constexpr double kGapOfExtent = 0.002;
 
-// The width of a domain whose opposite sides meet in space without the surface being periodic; 0 if they do not.
+// The width of a domain whose opposite sides meet in space without the surface being periodic; 0 if they do
+// not.
 double closure(const Surface& surface, bool in_u, double tolerance) {
   const Box2 box = domain(surface);
   const double lo = in_u ? box.lo.x : box.lo.y, hi = in_u ? box.hi.x : box.hi.y;
   const double across_lo = in_u ? box.lo.y : box.lo.x, across_hi = in_u ? box.hi.y : box.hi.x;
-  if (!(std::abs(lo) < 1e50 && std::abs(hi) < 1e50 && std::abs(across_lo) < 1e50 && std::abs(across_hi) < 1e50)) return 0;
+  if (!(std::abs(lo) < 1e50 && std::abs(hi) < 1e50 && std::abs(across_lo) < 1e50 &&
+        std::abs(across_hi) < 1e50))
+    return 0;
   for (int i = 0; i <= 8; ++i) {
     const double s = across_lo + (across_hi - across_lo) * i / 8;
     const Vec3 a = in_u ? point_at(surface, lo, s) : point_at(surface, s, lo);
@@ -53,7 +58,11 @@ double closure(const Surface& surface, bool in_u, double tolerance) {
 class Assembly {
  public:
   Assembly(const Surface& surface, std::vector<EdgeUse> uses, double tolerance)
-      : surface_(surface), left_(std::move(uses)), tolerance_(tolerance), metric_(metric_of(surface, left_)), extent_(extent_of(left_)) {}
+      : surface_(surface),
+        left_(std::move(uses)),
+        tolerance_(tolerance),
+        metric_(metric_of(surface, left_)),
+        extent_(extent_of(left_)) {}
 
   WireLoops run() {
     while (!left_.empty()) {
@@ -99,7 +108,8 @@ class Assembly {
     }
     const bool back = vertex >= 0 && vertex == loop.front().from;
     const double closing = metric_(loop.front().start() - end);
-    if (back && closing <= tolerance_ && !(least <= tolerance_ && turns_into_seam(loop, best))) return left_.size();
+    if (back && closing <= tolerance_ && !(least <= tolerance_ && turns_into_seam(loop, best)))
+      return left_.size();
     if (best < left_.size() || back) return best;
     return nearest_in_space(end);
   }
@@ -147,8 +157,10 @@ class Assembly {
   void close(std::vector<EdgeUse>& loop) {
     const Vec2 d = loop.front().start() - loop.back().end();
     const Vec2 turns = whole_periods(surface_, d);
-    if (turns.x != 0 || turns.y != 0) result_.winding = true;
-    else bridge(loop, d, loop.front().start());
+    if (turns.x != 0 || turns.y != 0)
+      result_.winding = true;
+    else
+      bridge(loop, d, loop.front().start());
   }
 
   // Joins the loop's end with `to`, which lies `d` further on, where they differ.
@@ -194,7 +206,8 @@ WireLoops assemble_loops(const Surface& surface, std::vector<EdgeUse> uses, doub
 
 Vec2 whole_periods(const Surface& surface, Vec2 step) {
   const double turn_u = period_u(surface), turn_v = period_v(surface);
-  return {turn_u > 0 ? std::round(step.x / turn_u) * turn_u : 0, turn_v > 0 ? std::round(step.y / turn_v) * turn_v : 0};
+  return {turn_u > 0 ? std::round(step.x / turn_u) * turn_u : 0,
+          turn_v > 0 ? std::round(step.y / turn_v) * turn_v : 0};
 }
 
 double signed_area(const std::vector<EdgeUse>& loop) {

@@ -16,8 +16,9 @@ struct EdgeUse {
   double t0 = 0, t1 = 0;
   int from = -1, to = -1;
   double tolerance = 0;  ///< the edge's and its vertices'
-  Vec2 file_start, file_end;  ///< where the file's own pcurve runs from and to: it knows on which side of a seam
-  bool file_wrong = false;     ///< the file's pcurve lay far off: only the order of the wire is left to go by
+  Vec2 file_start,
+      file_end;  ///< where the file's own pcurve runs from and to: it knows on which side of a seam
+  bool file_wrong = false;  ///< the file's pcurve lay far off: only the order of the wire is left to go by
   Vec2 start() const { return point_at(trim.pcurve, trim.reversed ? t1 : t0); }
   Vec2 end() const { return point_at(trim.pcurve, trim.reversed ? t0 : t1); }
 };
@@ -31,8 +32,8 @@ struct WireLoops {
   bool winding = false;  ///< a loop closes only after whole periods: its seam is missing
 };
 
-/// Orders one wire's uses, moves their pcurves by whole periods so that they join, and closes gaps in parameters that are
-/// larger than the tolerance by straight collapsed sides.
+/// Orders one wire's uses, moves their pcurves by whole periods so that they join, and closes gaps in
+/// parameters that are larger than the tolerance by straight collapsed sides.
 WireLoops assemble_loops(const Surface& surface, std::vector<EdgeUse> uses, double tolerance);
 
 /// The part of a step in parameters that is whole turns of a periodic surface.

@@ -1,5 +1,9 @@
 // dupin-reader: the process in which CAD files are read. Not for calling by hand: it answers in frames
 // (reader_protocol.h) through descriptor 3.
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <OSD_Parallel.hxx>
@@ -7,13 +11,9 @@
 #include <Standard_ErrorHandler.hxx>
 #include <Standard_Failure.hxx>
 #include <Standard_OutOfMemory.hxx>
-#include <fcntl.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
-#include <csignal>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -39,14 +39,22 @@ bool parse(int argc, char** argv, Arguments& a) {
   int i = 1;
   for (; i + 1 < argc && std::strcmp(argv[i], "--") != 0; i += 2) {
     const std::string name = argv[i], value = argv[i + 1];
-    if (name == "--parent") a.parent = std::strtol(value.c_str(), nullptr, 10);
-    else if (name == "--memory") a.memory_bytes = std::strtoull(value.c_str(), nullptr, 10);
-    else if (name == "--seconds") a.seconds = std::strtod(value.c_str(), nullptr);
-    else if (name == "--threads") a.threads = static_cast<int>(std::strtol(value.c_str(), nullptr, 10));
-    else if (name == "--unit") a.request.read.assumed_unit = value;
-    else if (name == "--mesh") a.request.mesh.deflection = std::strtod(value.c_str(), nullptr);
-    else if (name == "--angle") a.request.mesh.angle_radians = std::strtod(value.c_str(), nullptr);
-    else return false;
+    if (name == "--parent")
+      a.parent = std::strtol(value.c_str(), nullptr, 10);
+    else if (name == "--memory")
+      a.memory_bytes = std::strtoull(value.c_str(), nullptr, 10);
+    else if (name == "--seconds")
+      a.seconds = std::strtod(value.c_str(), nullptr);
+    else if (name == "--threads")
+      a.threads = static_cast<int>(std::strtol(value.c_str(), nullptr, 10));
+    else if (name == "--unit")
+      a.request.read.assumed_unit = value;
+    else if (name == "--mesh")
+      a.request.mesh.deflection = std::strtod(value.c_str(), nullptr);
+    else if (name == "--angle")
+      a.request.mesh.angle_radians = std::strtod(value.c_str(), nullptr);
+    else
+      return false;
   }
   if (i + 2 != argc) return false;
   a.request.path = argv[i + 1];
@@ -79,7 +87,9 @@ int fail(const Status& status) {
   return 1;
 }
 
-int out_of_memory() { return fail({StatusCode::limit, "reading needs more memory than the limit allows"}); }
+int out_of_memory() {
+  return fail({StatusCode::limit, "reading needs more memory than the limit allows"});
+}
 
 int answer(const ImportRequest& request) {
   const Stage stage = [](const char* name, double fraction) {
@@ -96,8 +106,9 @@ int answer(const ImportRequest& request) {
   } catch (const std::bad_alloc&) {
     return out_of_memory();
   } catch (const Standard_Failure& failure) {
-    return fail({StatusCode::unreadable, std::string("the CAD kernel gave up: ") + failure.DynamicType()->Name() +
-                                             " " + failure.GetMessageString()});
+    return fail({StatusCode::unreadable, std::string("the CAD kernel gave up: ") +
+                                             failure.DynamicType()->Name() + " " +
+                                             failure.GetMessageString()});
   } catch (const std::exception& failure) {
     return fail({StatusCode::unreadable, std::string("the CAD kernel gave up: ") + failure.what()});
   }
@@ -117,7 +128,8 @@ int main(int argc, char** argv) {
   apply_limits(arguments);
   dupin::set_thread_limit(arguments.threads);
   Message::DefaultMessenger()->ChangePrinters().Clear();
-  // The answer is complete once it is written: the kernel takes the memory back faster than destructors would.
+  // The answer is complete once it is written: the kernel takes the memory back faster than destructors
+  // would.
   const int code = answer(arguments.request);
   std::fflush(nullptr);
   std::_Exit(code);

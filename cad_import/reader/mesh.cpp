@@ -76,7 +76,8 @@ double mesh_faces(const std::vector<TopoDS_Face>& faces, double deflection, doub
 
 void take_mesh(const std::vector<TopoDS_Face>& faces, Part& part) {
   std::vector<FaceMesh> meshes(faces.size());
-  parallel_for(faces.size(), [&](std::size_t i) { meshes[i] = face_mesh(faces[i], part, part.faces[i]); }, 16);
+  parallel_for(
+      faces.size(), [&](std::size_t i) { meshes[i] = face_mesh(faces[i], part, part.faces[i]); }, 16);
   TriangleMesh& out = part.mesh;
   out.origin = part.box.center();
   for (std::size_t f = 0; f < meshes.size(); ++f) {

@@ -40,7 +40,8 @@ class SurfaceTable {
     for (const auto& [known, index] : by_handle_[surface.get()])
       if (known.IsEqual(location)) return index;
     Handle(Geom_Surface) placed = surface;
-    if (!location.IsIdentity()) placed = Handle(Geom_Surface)::DownCast(surface->Transformed(location.Transformation()));
+    if (!location.IsIdentity())
+      placed = Handle(Geom_Surface)::DownCast(surface->Transformed(location.Transformation()));
     std::optional<Surface> converted = to_surface(placed);
     if (!converted) return std::nullopt;
     surfaces.push_back(std::move(*converted));
@@ -115,7 +116,8 @@ class PartBuilder {
     const std::size_t first = edges.size();
     edges.resize(topology_.edge_count());
     parallel_for(
-        edges.size() - first, [&](std::size_t i) { edges[first + i] = to_edge(topology_.edge(first + i)); }, 64);
+        edges.size() - first, [&](std::size_t i) { edges[first + i] = to_edge(topology_.edge(first + i)); },
+        64);
   }
 
   // Edges that have a pcurve but no curve in space, and are no points, get one.
@@ -129,11 +131,13 @@ class PartBuilder {
           const StoredPcurve stored = stored_pcurve(use.shape, p.task.shape);
           if (!stored.curve || !(stored.t0 < stored.t1)) continue;
           edge.t0 = stored.t0, edge.t1 = stored.t1;
-          edge.curve = fit_curve(built_.part.surfaces[*p.surface], *stored.curve, edge.t0, edge.t1, kCurveFit * size_);
+          edge.curve =
+              fit_curve(built_.part.surfaces[*p.surface], *stored.curve, edge.t0, edge.t1, kCurveFit * size_);
           if (edge.curve) ++made;
         }
-    if (made > 0) note(made, "edge had no curve in space: made from its curve on a face",
-                       "edges had no curves in space: made from their curves on a face");
+    if (made > 0)
+      note(made, "edge had no curve in space: made from its curve on a face",
+           "edges had no curves in space: made from their curves on a face");
   }
 
   void build_faces(std::size_t first) {
@@ -161,14 +165,19 @@ class PartBuilder {
       convert_new_edges();
       complete_edges();
       build_faces(first);
-      const bool good = pending_.size() > first && std::all_of(pending_.begin() + static_cast<std::ptrdiff_t>(first), pending_.end(), [](const Pending& p) {
-        return !p.result.skip && !p.result.repair;
-      });
-      if (good) ++mended, pending_[i].replaced = true;
-      else pending_.resize(first);
+      const bool good = pending_.size() > first &&
+                        std::all_of(pending_.begin() + static_cast<std::ptrdiff_t>(first), pending_.end(),
+                                    [](const Pending& p) { return !p.result.skip && !p.result.repair; });
+      if (good)
+        ++mended, pending_[i].replaced = true;
+      else
+        pending_.resize(first);
     }
-    if (mended > 0) note(mended, "face's boundary did not close and was mended", "faces' boundaries did not close and were mended");
-    std::stable_sort(pending_.begin(), pending_.end(), [](const Pending& a, const Pending& b) { return a.source < b.source; });
+    if (mended > 0)
+      note(mended, "face's boundary did not close and was mended",
+           "faces' boundaries did not close and were mended");
+    std::stable_sort(pending_.begin(), pending_.end(),
+                     [](const Pending& a, const Pending& b) { return a.source < b.source; });
   }
 
   void take_faces() {
@@ -194,8 +203,9 @@ class PartBuilder {
       built_.part.faces.push_back(std::move(face));
       built_.shapes.push_back(p.task.shape);
     }
-    if (refitted > 0) note(refitted, "edge's curve on a face lay off the edge: projected anew",
-                           "edges' curves on faces lay off the edges: projected anew");
+    if (refitted > 0)
+      note(refitted, "edge's curve on a face lay off the edge: projected anew",
+           "edges' curves on faces lay off the edges: projected anew");
   }
 
   void number_new_edges(Face& face) {
@@ -209,14 +219,16 @@ class PartBuilder {
 
   void drop_invalid() {
     std::vector<std::size_t> stay;
-    for (SkippedFace& face : remove_invalid_faces(built_.part, stay)) built_.skipped.push_back(std::move(face));
+    for (SkippedFace& face : remove_invalid_faces(built_.part, stay))
+      built_.skipped.push_back(std::move(face));
     if (stay.size() == built_.shapes.size()) return;
     std::vector<TopoDS_Face> shapes;
     for (const std::size_t i : stay) shapes.push_back(built_.shapes[i]);
     built_.shapes = std::move(shapes);
   }
 
-  // Measured ones: a file's own may be anything. Edges that follow each other may miss each other at their vertex.
+  // Measured ones: a file's own may be anything. Edges that follow each other may miss each other at their
+  // vertex.
   void set_tolerances() {
     deviations_.resize(built_.part.edges.size(), 0);
     for (const Face& face : built_.part.faces)
@@ -228,7 +240,8 @@ class PartBuilder {
           const Trim &a = *real[i], &b = *real[(i + 1) % real.size()];
           const double gap = distance(end_of(a, true), end_of(b, false));
           if (!(gap < kLargestMiss * size_)) continue;  // a collapsed side lies between them
-          for (const std::uint32_t edge : {a.edge, b.edge}) deviations_[edge] = std::max(deviations_[edge], gap);
+          for (const std::uint32_t edge : {a.edge, b.edge})
+            deviations_[edge] = std::max(deviations_[edge], gap);
         }
       }
     for (std::size_t i = 0; i < deviations_.size(); ++i)
@@ -283,12 +296,15 @@ class PartBuilder {
   Topology topology_;
   SurfaceTable surfaces_;
   std::vector<Pending> pending_;
-  std::vector<double> deviations_;  ///< per edge, how far curve, pcurves and vertices were seen to lie from each other
+  std::vector<double>
+      deviations_;  ///< per edge, how far curve, pcurves and vertices were seen to lie from each other
   double size_ = 1;
 };
 
 }  // namespace
 
-BuiltPart build_part(const PartSource& source) { return PartBuilder(source).run(); }
+BuiltPart build_part(const PartSource& source) {
+  return PartBuilder(source).run();
+}
 
 }  // namespace dupin::reader

@@ -27,9 +27,9 @@ struct PartSource {
 
 struct BuiltPart {
   Part part;
-  std::vector<TopoDS_Face> shapes;   ///< the face of OCCT's that became part.faces[i]
+  std::vector<TopoDS_Face> shapes;  ///< the face of OCCT's that became part.faces[i]
   std::vector<SkippedFace> skipped;
-  std::vector<std::string> notes;    ///< what was repaired or assumed; without the part's name
+  std::vector<std::string> notes;  ///< what was repaired or assumed; without the part's name
 };
 
 BuiltPart build_part(const PartSource& source);

@@ -37,7 +37,8 @@ Vec3 outward_normal(const Part& part, const Use& use, double t) {
 
 bool is_smooth(const Part& part, const Edge& edge, const Use& a, const Use& b) {
   static const double kLeast = std::cos(kSmoothDegrees * std::numbers::pi / 180);
-  const double sign = a.runs_backwards() != b.runs_backwards() ? 1 : -1;  // the same way: one of them is turned over
+  const double sign =
+      a.runs_backwards() != b.runs_backwards() ? 1 : -1;  // the same way: one of them is turned over
   for (const double s : {0.03, 0.27, 0.5, 0.73, 0.97}) {
     const double t = edge.t0 + (edge.t1 - edge.t0) * s;
     const Vec3 n = outward_normal(part, a, t), m = outward_normal(part, b, t);
@@ -47,8 +48,8 @@ bool is_smooth(const Part& part, const Edge& edge, const Use& a, const Use& b) {
   return true;
 }
 
-// Gauss–Legendre on [0, 1]: over an eighth of a turn, or a cubic span, three points leave less than a millionth, and only the
-// volume's sign is asked for.
+// Gauss–Legendre on [0, 1]: over an eighth of a turn, or a cubic span, three points leave less than a
+// millionth, and only the volume's sign is asked for.
 constexpr int kPoints = 3;
 constexpr double kNodes[kPoints] = {0.11270166537925831, 0.5, 0.88729833462074169};
 constexpr double kWeights[kPoints] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
@@ -183,7 +184,8 @@ void mark_smooth_edges(Part& part) {
 bool is_watertight(const Part& part) {
   for (const auto& uses : uses_by_edge(part)) {
     // As often one way as the other; more than once each where a solid touches itself.
-    const auto backwards = std::count_if(uses.begin(), uses.end(), [](const Use& use) { return use.runs_backwards(); });
+    const auto backwards =
+        std::count_if(uses.begin(), uses.end(), [](const Use& use) { return use.runs_backwards(); });
     if (static_cast<std::size_t>(2 * backwards) != uses.size()) return false;
   }
   // A face without loops is closed in itself only if its surface is.
@@ -202,7 +204,8 @@ Volume enclosed_volume(const Part& part, const std::vector<std::uint32_t>& faces
   std::vector<double> values(faces.size());
   const Vec3 origin = part.box.center();
   parallel_for(
-      faces.size(), [&](std::size_t i) { values[i] = FaceVolume(part, part.faces[faces[i]], origin).value(); }, 16);
+      faces.size(),
+      [&](std::size_t i) { values[i] = FaceVolume(part, part.faces[faces[i]], origin).value(); }, 16);
   Volume volume;
   for (const double v : values) volume.signed_volume += v, volume.scale += std::abs(v);
   return volume;

@@ -24,7 +24,8 @@ struct Volume {
 /// Of the faces in `faces`.
 Volume enclosed_volume(const Part& part, const std::vector<std::uint32_t>& faces);
 
-/// Sets Part::closed: watertight, and every shell of it turned the right way (outer shells outward, voids inward).
+/// Sets Part::closed: watertight, and every shell of it turned the right way (outer shells outward, voids
+/// inward).
 void mark_closed(Part& part);
 
 void set_part_box(Part& part);

@@ -41,12 +41,16 @@ class Reading {
         ++hidden;
         continue;
       }
-      if (link) add_link(i);
-      else add_shape(object, container_placement(i), object, true);
+      if (link)
+        add_link(i);
+      else
+        add_shape(object, container_placement(i), object, true);
     }
-    if (hidden > 0) out_.notes.push_back(std::to_string(hidden) + " hidden objects of the document are left out");
+    if (hidden > 0)
+      out_.notes.push_back(std::to_string(hidden) + " hidden objects of the document are left out");
     if (!document_.has_view)
-      out_.notes.push_back("the document says nothing about colours and what is shown; shown is what nothing else uses");
+      out_.notes.push_back(
+          "the document says nothing about colours and what is shown; shown is what nothing else uses");
     return std::move(out_);
   }
 
@@ -55,11 +59,13 @@ class Reading {
 
   static bool is_body(const FcObject& o) { return o.type == "PartDesign::Body"; }
   // App::Part and its kin; a plain group only lists its members.
-  static bool places_its_group(const FcObject& o) { return o.has_placement && !o.group.empty() && o.linked.empty(); }
+  static bool places_its_group(const FcObject& o) {
+    return o.has_placement && !o.group.empty() && o.linked.empty();
+  }
   static bool is_construction(const FcObject& o) {
-    static const std::set<std::string> kTypes{"PartDesign::Plane", "PartDesign::Line", "PartDesign::Point",
-                                              "PartDesign::CoordinateSystem", "App::Plane", "App::Line",
-                                              "PartDesign::ShapeBinder", "PartDesign::SubShapeBinder"};
+    static const std::set<std::string> kTypes{
+        "PartDesign::Plane", "PartDesign::Line", "PartDesign::Point",       "PartDesign::CoordinateSystem",
+        "App::Plane",        "App::Line",        "PartDesign::ShapeBinder", "PartDesign::SubShapeBinder"};
     return kTypes.contains(o.type) || o.type.starts_with("Sketcher::");
   }
 
@@ -94,13 +100,15 @@ class Reading {
     const auto target = index_.find(link.linked);
     if (link.link_to_other_file || link.link_elements > 0 || target == index_.end() ||
         document_.objects[target->second].shape_file.empty()) {
-      out_.skipped.push_back({name_of(link), "a link to another file, an array of links or a link to a container", 1});
+      out_.skipped.push_back(
+          {name_of(link), "a link to another file, an array of links or a link to a container", 1});
       return;
     }
     const Vec3 s = link.link_scale;
     Affine3 placement = link.placement;
     placement.linear = {placement.linear.x * s.x, placement.linear.y * s.y, placement.linear.z * s.z};
-    add_shape(document_.objects[target->second], container_placement(i) * placement, link, link.link_keeps_placement);
+    add_shape(document_.objects[target->second], container_placement(i) * placement, link,
+              link.link_keeps_placement);
   }
 
   // The object's own placement is where its shape is; the file may or may not hold it in the shape too.
@@ -153,7 +161,9 @@ class Reading {
     return shape;
   }
 
-  static std::string name_of(const FcObject& object) { return object.label.empty() ? object.name : object.label; }
+  static std::string name_of(const FcObject& object) {
+    return object.label.empty() ? object.name : object.label;
+  }
 
   ZipArchive& archive_;
   const FcDocument& document_;
@@ -172,7 +182,8 @@ Result<SourceDocument> read_fcstd(const std::string& path, const Stage& stage) {
   const std::unique_ptr<ZipArchive> archive = ZipArchive::open(path);
   if (!archive) return {StatusCode::unreadable, "the file is a damaged zip archive"};
   const std::optional<std::string> document = archive->read("Document.xml");
-  if (!document) return {StatusCode::unreadable, "a zip archive, but no FCStd file: it has no readable Document.xml"};
+  if (!document)
+    return {StatusCode::unreadable, "a zip archive, but no FCStd file: it has no readable Document.xml"};
   const Result<FcDocument> parsed = parse_fcstd(*document, archive->read("GuiDocument.xml").value_or(""));
   if (!parsed.ok()) return parsed.status();
   return Reading(*archive, *parsed, stage).run();

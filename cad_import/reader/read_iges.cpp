@@ -2,6 +2,7 @@
 #include <IGESCAFControl_Reader.hxx>
 #include <Interface_Static.hxx>
 
+#include "kernel_progress.h"
 #include "read_files.h"
 #include "xde_document.h"
 
@@ -18,7 +19,9 @@ Result<SourceDocument> read_iges(const std::string& path, const Stage& stage) {
     return {StatusCode::unreadable, "the IGES file is damaged: it cannot be parsed"};
   stage("building shapes", 0);
   Handle(TDocStd_Document) document = new_xde_document();
-  if (!reader.Transfer(document)) return {StatusCode::unreadable, "the IGES file holds no shape that can be built"};
+  const Handle(KernelProgress) progress = new KernelProgress(stage, "building shapes");
+  if (!reader.Transfer(document, progress->Start()))
+    return {StatusCode::unreadable, "the IGES file holds no shape that can be built"};
   SourceDocument out{"IGES", "mm"};
   add_items(document, out);
   return out;

@@ -2,6 +2,7 @@
 #include <Interface_Static.hxx>
 #include <STEPCAFControl_Reader.hxx>
 
+#include "kernel_progress.h"
 #include "read_files.h"
 #include "step_faces.h"
 #include "xde_document.h"
@@ -23,7 +24,9 @@ Result<SourceDocument> read_step(const std::string& path, const Stage& stage) {
     return {StatusCode::unreadable, "the STEP file is damaged: it cannot be parsed"};
   stage("building shapes", 0);
   Handle(TDocStd_Document) document = new_xde_document();
-  if (!reader.Transfer(document)) return {StatusCode::unreadable, "the STEP file holds no shape that can be built"};
+  const Handle(KernelProgress) progress = new KernelProgress(stage, "building shapes");
+  if (!reader.Transfer(document, progress->Start()))
+    return {StatusCode::unreadable, "the STEP file holds no shape that can be built"};
   SourceDocument out{"STEP", "mm"};
   add_items(document, out);
   report_lost_faces(reader.Reader().WS(), out);

@@ -17,7 +17,8 @@ std::vector<Vec2> polyline(const Part& part, const Trim& trim) {
     at.push_back(edge.t1);
     stops.clear();
     for (std::size_t i = 0; i + 1 < at.size(); ++i)
-      for (int k = 0; k < kSamplesPerPiece; ++k) stops.push_back(at[i] + (at[i + 1] - at[i]) * k / kSamplesPerPiece);
+      for (int k = 0; k < kSamplesPerPiece; ++k)
+        stops.push_back(at[i] + (at[i + 1] - at[i]) * k / kSamplesPerPiece);
   }
   stops.push_back(edge.t1);
   if (trim.reversed) std::reverse(stops.begin(), stops.end());
@@ -29,8 +30,11 @@ std::vector<Vec2> polyline(const Part& part, const Trim& trim) {
 }  // namespace
 
 RegionGrid::RegionGrid(const Part& part, const Face& face, int cells_u, int cells_v)
-    : box_(face.uv_box), cells_u_(cells_u), cells_v_(cells_v),
-      touched_(static_cast<std::size_t>(cells_u) * cells_v, face.loops.empty() ? 1 : 0), crossings_(cells_v) {
+    : box_(face.uv_box),
+      cells_u_(cells_u),
+      cells_v_(cells_v),
+      touched_(static_cast<std::size_t>(cells_u) * cells_v, face.loops.empty() ? 1 : 0),
+      crossings_(cells_v) {
   for (const Loop& loop : face.loops) {
     std::vector<Vec2> points;
     for (const Trim& trim : loop)
@@ -47,7 +51,8 @@ void RegionGrid::mark_line(Vec2 a, Vec2 b) {
   const int steps = 1 + static_cast<int>(2 * std::max(std::abs(q.x - p.x), std::abs(q.y - p.y)));
   for (int s = 0; s <= steps; ++s) {
     const Vec2 m = p + (q - p) * (static_cast<double>(s) / steps);
-    const int i = std::clamp(static_cast<int>(m.x), 0, cells_u_ - 1), j = std::clamp(static_cast<int>(m.y), 0, cells_v_ - 1);
+    const int i = std::clamp(static_cast<int>(m.x), 0, cells_u_ - 1),
+              j = std::clamp(static_cast<int>(m.y), 0, cells_v_ - 1);
     touched_[static_cast<std::size_t>(j) * cells_u_ + i] = 1;
   }
   // Half-open in v, so that a point between two pieces counts once.
@@ -61,7 +66,8 @@ void RegionGrid::fill() {
     std::vector<double>& row = crossings_[j];
     std::sort(row.begin(), row.end());
     for (std::size_t k = 0; k + 1 < row.size(); k += 2)
-      for (int i = std::max(0, static_cast<int>(std::ceil(row[k] - 0.5))); i < cells_u_ && i + 0.5 < row[k + 1]; ++i)
+      for (int i = std::max(0, static_cast<int>(std::ceil(row[k] - 0.5)));
+           i < cells_u_ && i + 0.5 < row[k + 1]; ++i)
         touched_[static_cast<std::size_t>(j) * cells_u_ + i] = 1;
   }
 }

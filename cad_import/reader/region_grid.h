@@ -26,7 +26,8 @@ class RegionGrid {
   Box2 box_;
   int cells_u_, cells_v_;
   std::vector<char> touched_;
-  std::vector<std::vector<double>> crossings_;  ///< per row, where the loops cross the line through the cells' centres
+  std::vector<std::vector<double>>
+      crossings_;  ///< per row, where the loops cross the line through the cells' centres
 };
 
 }  // namespace dupin::reader

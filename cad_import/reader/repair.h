@@ -8,8 +8,8 @@
 
 namespace dupin::reader {
 
-/// The face with missing seams and natural boundaries added and its wires put in order, by OCCT's shape healing; several if it
-/// fell apart, none if nothing came of it. Orientation is kept.
+/// The face with missing seams and natural boundaries added and its wires put in order, by OCCT's shape
+/// healing; several if it fell apart, none if nothing came of it. Orientation is kept.
 std::vector<TopoDS_Face> repaired(const TopoDS_Face& face);
 
 }  // namespace dupin::reader

@@ -45,7 +45,8 @@ std::vector<SkippedFace> remove_invalid_faces(Part& part, std::vector<std::size_
       kept.push_back(std::move(part.faces[i]));
     } else {
       const std::string& name = part.faces[i].name;
-      removed.push_back({name.empty() ? "face " + std::to_string(i + 1) : name, after_colon(status.message), 1});
+      removed.push_back(
+          {name.empty() ? "face " + std::to_string(i + 1) : name, after_colon(status.message), 1});
     }
   }
   part.faces = std::move(kept);

@@ -27,8 +27,8 @@ Box2 search_domain(const Surface& surface, const std::vector<Edge>& edges,
                    const std::vector<std::vector<WireEdge>>& wires) {
   Box2 whole = domain(surface);
   const Box3 box = edge_box(edges, wires);
-  // Along an infinite direction parameters grow with the distance at the partial's rate, which for the unbounded kinds
-  // (plane, cylinder, cone, extrusion, a revolved line) is constant.
+  // Along an infinite direction parameters grow with the distance at the partial's rate, which for the
+  // unbounded kinds (plane, cylinder, cone, extrusion, a revolved line) is constant.
   const auto within = [](double lo, double hi, double inside) {
     return std::abs(lo) < kInfinite && std::abs(hi) < kInfinite ? (lo + hi) / 2 : inside;
   };

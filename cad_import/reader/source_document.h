@@ -26,10 +26,10 @@ struct ShapeStyles {
 
 /// One shape in one place.
 struct SourceItem {
-  TopoDS_Shape shape;                         ///< with its own location
+  TopoDS_Shape shape;  ///< with its own location
   Affine3 placement;
   std::string part_name;
-  std::string path;                           ///< its path in the assembly
+  std::string path;  ///< its path in the assembly
   std::optional<Color> part_color, instance_color;
   std::shared_ptr<const ShapeStyles> styles;  ///< may be null
 };

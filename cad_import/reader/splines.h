@@ -9,10 +9,10 @@
 
 namespace dupin::reader {
 
-/// The full knot vector (nurbs/knots.h). A periodic spline with n poles gets n + 2·degree + 1 knots, for n + degree
-/// poles of which the last `degree` repeat the first.
-std::vector<double> full_knots(const TColStd_Array1OfReal& knots, const TColStd_Array1OfInteger& multiplicities,
-                               int degree, bool periodic);
+/// The full knot vector (nurbs/knots.h). A periodic spline with n poles gets n + 2·degree + 1 knots, for n +
+/// degree poles of which the last `degree` repeat the first.
+std::vector<double> full_knots(const TColStd_Array1OfReal& knots,
+                               const TColStd_Array1OfInteger& multiplicities, int degree, bool periodic);
 
 /// Empties `weights` if they are all the same: the spline is polynomial.
 void drop_equal_weights(std::vector<double>& weights);

@@ -13,14 +13,15 @@
 #include <Transfer_TransientProcess.hxx>
 #include <XSControl_TransferReader.hxx>
 
-
 namespace dupin::reader {
 namespace {
 
 class LostFaces {
  public:
   explicit LostFaces(const Handle(XSControl_WorkSession) & session)
-      : model_(Handle(StepData_StepModel)::DownCast(session->Model())), process_(session->TransferReader()->TransientProcess()), graph_(session->Graph()) {}
+      : model_(Handle(StepData_StepModel)::DownCast(session->Model())),
+        process_(session->TransferReader()->TransientProcess()),
+        graph_(session->Graph()) {}
 
   void report(SourceDocument& document) {
     int unused = 0;
@@ -35,7 +36,8 @@ class LostFaces {
     }
     report_triangles(document);
     if (unused > 0)
-      document.notes.push_back(std::to_string(unused) + " faces of the file belong to no shape and are left out");
+      document.notes.push_back(std::to_string(unused) +
+                               " faces of the file belong to no shape and are left out");
   }
 
  private:
@@ -46,7 +48,8 @@ class LostFaces {
     constexpr int kLink = 5;  // name, coordinates, count, normals, link, …
     std::uint32_t count = 0;
     for (int i = 1; i <= model_->NbEntities(); ++i) {
-      const Handle(StepData_UndefinedEntity) entity = Handle(StepData_UndefinedEntity)::DownCast(model_->Value(i));
+      const Handle(StepData_UndefinedEntity) entity =
+          Handle(StepData_UndefinedEntity)::DownCast(model_->Value(i));
       if (entity.IsNull()) continue;
       const std::string_view type = entity->StepType();
       if (type != "TRIANGULATED_FACE" && type != "COMPLEX_TRIANGULATED_FACE") continue;
@@ -54,7 +57,8 @@ class LostFaces {
       if (content->NbParams() < kLink || !content->IsParamEntity(kLink)) ++count;
     }
     if (count > 0)
-      document.skipped.push_back({"faces of triangles", "the file has them as triangles only, without their surfaces", count});
+      document.skipped.push_back(
+          {"faces of triangles", "the file has them as triangles only, without their surfaces", count});
   }
 
   bool has_shape(const Handle(Standard_Transient) & entity) const {
@@ -66,7 +70,8 @@ class LostFaces {
   bool was_asked_for(const Handle(Standard_Transient) & entity, std::string& reason, int level) const {
     const Handle(Transfer_Binder) binder = process_->Find(entity);
     if (!binder.IsNull()) {
-      if (level > 0 && !TransferBRep::ShapeResult(binder).IsNull()) return reason = "the CAD kernel dropped it", true;
+      if (level > 0 && !TransferBRep::ShapeResult(binder).IsNull())
+        return reason = "the CAD kernel dropped it", true;
       reason = why(binder);
       return true;
     }
@@ -79,8 +84,10 @@ class LostFaces {
   static std::string why(const Handle(Transfer_Binder) & binder) {
     const Handle(Interface_Check) check = binder->Check();
     std::string text = "the CAD kernel could not build it";
-    if (check->HasFailed()) text += std::string(": ") + check->CFail(1);
-    else if (check->HasWarnings()) text += std::string(": ") + check->CWarning(1);
+    if (check->HasFailed())
+      text += std::string(": ") + check->CFail(1);
+    else if (check->HasWarnings())
+      text += std::string(": ") + check->CWarning(1);
     return text;
   }
 

@@ -8,8 +8,8 @@
 
 namespace dupin::reader {
 
-/// Lists the file's face entities that the translation was asked for and gave nothing, and notes those that no shape
-/// uses. OCCT leaves both out without a word.
+/// Lists the file's face entities that the translation was asked for and gave nothing, and notes those that
+/// no shape uses. OCCT leaves both out without a word.
 void report_lost_faces(const Handle(XSControl_WorkSession) & session, SourceDocument& document);
 
 }  // namespace dupin::reader

@@ -88,7 +88,8 @@ std::optional<Surface> to_surface(const Handle(Geom_Surface) & any) {
   if (surface.IsNull()) return std::nullopt;
   const auto type = surface->DynamicType();
   const Geom_Surface& s = *surface;
-  if (type == STANDARD_TYPE(Geom_Plane)) return Surface{Plane{to_frame(static_cast<const Geom_Plane&>(s).Position())}};
+  if (type == STANDARD_TYPE(Geom_Plane))
+    return Surface{Plane{to_frame(static_cast<const Geom_Plane&>(s).Position())}};
   if (type == STANDARD_TYPE(Geom_CylindricalSurface)) {
     const auto& c = static_cast<const Geom_CylindricalSurface&>(s);
     return Surface{Cylinder{to_frame(c.Position()), c.Radius()}};
@@ -105,8 +106,10 @@ std::optional<Surface> to_surface(const Handle(Geom_Surface) & any) {
     const auto& c = static_cast<const Geom_ToroidalSurface&>(s);
     return Surface{Torus{to_frame(c.Position()), c.MajorRadius(), c.MinorRadius()}};
   }
-  if (type == STANDARD_TYPE(Geom_BezierSurface)) return Surface{bezier(static_cast<const Geom_BezierSurface&>(s))};
-  if (type == STANDARD_TYPE(Geom_BSplineSurface)) return Surface{bspline(static_cast<const Geom_BSplineSurface&>(s))};
+  if (type == STANDARD_TYPE(Geom_BezierSurface))
+    return Surface{bezier(static_cast<const Geom_BezierSurface&>(s))};
+  if (type == STANDARD_TYPE(Geom_BSplineSurface))
+    return Surface{bspline(static_cast<const Geom_BSplineSurface&>(s))};
   if (type == STANDARD_TYPE(Geom_SurfaceOfRevolution)) {
     const auto& c = static_cast<const Geom_SurfaceOfRevolution&>(s);
     auto profile = to_curve(c.BasisCurve());

@@ -24,7 +24,9 @@ bool bounds_a_face(const TopoDS_Shape& shape) {
 
 }  // namespace
 
-const TopoDS_Edge& Topology::edge(std::size_t i) const { return TopoDS::Edge(edges_(static_cast<int>(i) + 1)); }
+const TopoDS_Edge& Topology::edge(std::size_t i) const {
+  return TopoDS::Edge(edges_(static_cast<int>(i) + 1));
+}
 
 EdgeNumbers Topology::number(const TopoDS_Edge& edge) {
   EdgeNumbers n;
@@ -66,7 +68,8 @@ Edge to_edge(const TopoDS_Edge& shape) {
     return edge;
   }
   const Handle(Geom_Curve) placed =
-      location.IsIdentity() ? curve : Handle(Geom_Curve)::DownCast(curve->Transformed(location.Transformation()));
+      location.IsIdentity() ? curve
+                            : Handle(Geom_Curve)::DownCast(curve->Transformed(location.Transformation()));
   edge.curve = to_curve(placed);
   return edge;
 }

@@ -40,7 +40,8 @@ struct WireEdge {
 /// The edges of each wire that bounds the face. Internal and external ones are left out.
 std::vector<std::vector<WireEdge>> wires_of(const TopoDS_Face& face, Topology& topology);
 
-/// The 3D curve and range of an edge in its piece's space; no curve for degenerate edges and those without one.
+/// The 3D curve and range of an edge in its piece's space; no curve for degenerate edges and those without
+/// one.
 Edge to_edge(const TopoDS_Edge& shape);
 
 /// The pcurve that the file has for this use of an edge, over `t0` … `t1` of the edge; none if there is none.

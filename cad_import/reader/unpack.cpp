@@ -19,7 +19,9 @@ MemoryFile::~MemoryFile() {
   if (fd_ >= 0) ::close(fd_);
 }
 
-std::string MemoryFile::path() const { return "/proc/self/fd/" + std::to_string(fd_); }
+std::string MemoryFile::path() const {
+  return "/proc/self/fd/" + std::to_string(fd_);
+}
 
 Result<MemoryFile> unpack_gzip(const std::string& path) {
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> in(::gzopen(path.c_str(), "rbe"), ::gzclose);
@@ -34,14 +36,16 @@ Result<MemoryFile> unpack_gzip(const std::string& path) {
     if (n < 0) return {StatusCode::unreadable, "the compressed file is damaged"};
     if (n == 0) break;
     total += static_cast<std::uint64_t>(n);
-    if (total > kMaxUnpackedBytes) return {StatusCode::limit, "the compressed file unpacks to more than 4 GiB"};
+    if (total > kMaxUnpackedBytes)
+      return {StatusCode::limit, "the compressed file unpacks to more than 4 GiB"};
     if (!write_all(fd, {buffer.data(), static_cast<std::size_t>(n)}))
       return {StatusCode::limit, "no memory for unpacking the file"};
   }
   // gzread() takes a file that ends too early for complete; gzclose() and gzerror() know better.
   int error = Z_OK;
   ::gzerror(in.get(), &error);
-  if (error != Z_OK && error != Z_STREAM_END) return {StatusCode::unreadable, "the compressed file is cut off"};
+  if (error != Z_OK && error != Z_STREAM_END)
+    return {StatusCode::unreadable, "the compressed file is cut off"};
   return out;
 }
 

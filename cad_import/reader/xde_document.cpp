@@ -31,8 +31,8 @@ std::string name_of(const TDF_Label& label) {
 
 // Names that a file's writer or OCCT made up say nothing.
 bool says_nothing(const std::string& name) {
-  static const std::set<std::string> kKinds{"",      "SOLID",     "SHELL",    "COMPOUND", "FACE",
-                                            "COMPSOLID", "ASSEMBLY", "SHAPE"};
+  static const std::set<std::string> kKinds{"",     "SOLID",     "SHELL",    "COMPOUND",
+                                            "FACE", "COMPSOLID", "ASSEMBLY", "SHAPE"};
   const bool number = name.find_first_not_of("0123456789") == std::string::npos;
   return kKinds.contains(name) || number || name.starts_with("NAUO") || name.starts_with("=>[") ||
          name.starts_with("Open CASCADE STEP translator");
@@ -42,7 +42,8 @@ class Walk {
  public:
   Walk(const Handle(TDocStd_Document) & document, SourceDocument& out)
       : shapes_(XCAFDoc_DocumentTool::ShapeTool(document->Main())),
-        colors_(XCAFDoc_DocumentTool::ColorTool(document->Main())), out_(out) {}
+        colors_(XCAFDoc_DocumentTool::ColorTool(document->Main())),
+        out_(out) {}
 
   void run() {
     TDF_LabelSequence roots;
@@ -73,7 +74,8 @@ class Walk {
     item.placement = place.to_world;
     item.path = place.path;
     item.part_name = name_of(label);
-    if (says_nothing(item.part_name)) item.part_name = says_nothing(place.component_name) ? "" : place.component_name;
+    if (says_nothing(item.part_name))
+      item.part_name = says_nothing(place.component_name) ? "" : place.component_name;
     item.part_color = color_of(label);
     item.instance_color = place.override_color;
     if (const auto color = color_in_context(place.components)) item.instance_color = color;
@@ -91,8 +93,7 @@ class Walk {
       TDF_Label referred;
       if (!XCAFDoc_ShapeTool::GetReferredShape(component, referred)) continue;
       Place below = place;
-      below.to_world =
-          place.to_world * to_affine(XCAFDoc_ShapeTool::GetLocation(component).Transformation());
+      below.to_world = place.to_world * to_affine(XCAFDoc_ShapeTool::GetLocation(component).Transformation());
       const std::string instance = name_of(component), product = name_of(referred);
       below.component_name = instance;
       below.components.push_back(component);
@@ -128,7 +129,8 @@ class Walk {
       const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(subshapes.Value(i));
       if (shape.IsNull()) continue;
       if (const auto color = color_of(subshapes.Value(i))) styles->colors.Bind(shape, *color);
-      if (const std::string name = name_of(subshapes.Value(i)); !says_nothing(name)) styles->names.Bind(shape, name);
+      if (const std::string name = name_of(subshapes.Value(i)); !says_nothing(name))
+        styles->names.Bind(shape, name);
     }
     return known = styles;
   }
@@ -139,8 +141,8 @@ class Walk {
       Quantity_ColorRGBA color;
       if (!colors_->GetColor(label, type, color)) continue;
       const Quantity_Color& rgb = color.GetRGB();  // linear
-      return Color{static_cast<float>(rgb.Red()), static_cast<float>(rgb.Green()), static_cast<float>(rgb.Blue()),
-                   color.Alpha()};
+      return Color{static_cast<float>(rgb.Red()), static_cast<float>(rgb.Green()),
+                   static_cast<float>(rgb.Blue()), color.Alpha()};
     }
     return std::nullopt;
   }
@@ -160,6 +162,8 @@ Handle(TDocStd_Document) new_xde_document() {
   return document;
 }
 
-void add_items(const Handle(TDocStd_Document) & document, SourceDocument& out) { Walk(document, out).run(); }
+void add_items(const Handle(TDocStd_Document) & document, SourceDocument& out) {
+  Walk(document, out).run();
+}
 
 }  // namespace dupin::reader

@@ -12,7 +12,9 @@ std::unique_ptr<ZipArchive> ZipArchive::open(const std::string& path) {
   return std::unique_ptr<ZipArchive>(archive ? new ZipArchive(archive) : nullptr);
 }
 
-ZipArchive::~ZipArchive() { ::zip_discard(archive_); }
+ZipArchive::~ZipArchive() {
+  ::zip_discard(archive_);
+}
 
 std::optional<std::string> ZipArchive::read(const std::string& member) {
   zip_file_t* file = ::zip_fopen(archive_, member.c_str(), 0);

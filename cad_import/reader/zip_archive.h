@@ -16,8 +16,8 @@ class ZipArchive {
   /// Null if the file is no zip archive.
   static std::unique_ptr<ZipArchive> open(const std::string& path);
   ~ZipArchive();
-  /// The member's content; none if there is no such member, it is damaged, or all members read so far unpack to more than
-  /// kMaxUnpackedBytes.
+  /// The member's content; none if there is no such member, it is damaged, or all members read so far unpack
+  /// to more than kMaxUnpackedBytes.
   std::optional<std::string> read(const std::string& member);
 
  private:

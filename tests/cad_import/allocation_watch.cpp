@@ -15,12 +15,20 @@ void* operator new(std::size_t size) {
   if (void* p = std::malloc(size)) return p;
   throw std::bad_alloc();
 }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete(void* p) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+  std::free(p);
+}
 
 namespace dupin::test {
 
-void watch_allocations() { g_largest = 0; }
-std::size_t largest_allocation() { return g_largest; }
+void watch_allocations() {
+  g_largest = 0;
+}
+std::size_t largest_allocation() {
+  return g_largest;
+}
 
 }  // namespace dupin::test

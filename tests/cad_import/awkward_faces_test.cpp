@@ -1,4 +1,6 @@
-// Faces as files have them that were not made by a careful modeller: without seams, without boundaries, turned over.
+// Faces as files have them that were not made by a careful modeller: without seams, without boundaries,
+// turned over.
+#include <gtest/gtest.h>
 #include <BRepAdaptor_Curve.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
@@ -22,7 +24,6 @@
 #include <TopoDS_Iterator.hxx>
 #include <gp_Circ.hxx>
 #include <gp_Pln.hxx>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numbers>
@@ -36,14 +37,15 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Of all faces together, by midpoint sums over the parameter box, to a few per cent: an oracle without any of the reader's
-// own integration.
+// Of all faces together, by midpoint sums over the parameter box, to a few per cent: an oracle without any of
+// the reader's own integration.
 double area_of(const Part& part, int cells = 200) {
   double area = 0;
   for (const Face& face : part.faces)
     for (int i = 0; i < cells; ++i)
       for (int j = 0; j < cells; ++j) {
-        const Vec2 q = face.uv_box.lo + Vec2{face.uv_box.size().x * (i + 0.5) / cells, face.uv_box.size().y * (j + 0.5) / cells};
+        const Vec2 q = face.uv_box.lo + Vec2{face.uv_box.size().x * (i + 0.5) / cells,
+                                             face.uv_box.size().y * (j + 0.5) / cells};
         if (!face.loops.empty() && test::side_of_loops(part, face, q) < 0) continue;
         const SurfaceJet s = evaluate(part.surfaces[face.surface], q.x, q.y, 1);
         area += length(cross(s.pu, s.pv)) * face.uv_box.size().x * face.uv_box.size().y / (cells * cells);
@@ -180,7 +182,9 @@ TEST(AwkwardFaces, RepeatedSolidsAreStoredOnce) {
     at.SetTranslation(gp_Vec(2 * i, 0, 0));
     builder.Add(compound, box.Moved(at));
   }
-  builder.Add(compound, BRepBuilderAPI_MakeFace(gp_Pln(gp_Ax3(gp_Pnt(0, 0, -1), gp_Dir(0, 0, 1))), -1, 1, -1, 1).Face());
+  builder.Add(
+      compound,
+      BRepBuilderAPI_MakeFace(gp_Pln(gp_Ax3(gp_Pnt(0, 0, -1), gp_Dir(0, 0, 1))), -1, 1, -1, 1).Face());
   const Model model = convert(document_of(compound), {}, kQuiet);
   ASSERT_EQ(model.parts.size(), 2u);
   EXPECT_EQ(model.instances.size(), 6u);
@@ -202,7 +206,8 @@ TEST(AwkwardFaces, AMirroredPlacementKeepsThePart) {
 TEST(AwkwardFaces, AMirroredSolidIsStillOutward) {
   gp_Trsf mirror;
   mirror.SetMirror(gp_Ax2(gp_Pnt(1, 2, 3), gp_Dir(1, 1, 0)));
-  for (const TopoDS_Shape& shape : {BRepPrimAPI_MakeCone(2, 1, 3).Shape(), BRepPrimAPI_MakeTorus(3, 1, 2.0).Shape()}) {
+  for (const TopoDS_Shape& shape :
+       {BRepPrimAPI_MakeCone(2, 1, 3).Shape(), BRepPrimAPI_MakeTorus(3, 1, 2.0).Shape()}) {
     const BuiltPart built = test::build(BRepBuilderAPI_Transform(shape, mirror, true).Shape());
     EXPECT_TRUE(built.part.closed);
     EXPECT_TRUE(built.skipped.empty());
@@ -222,7 +227,8 @@ TEST(AwkwardFaces, AWireWithItsEdgesInDisorderIsPutInOrder) {
       TopoDS_Wire wire;
       builder.MakeWire(wire);
       // Seam, seam, circle, circle: an order in which nothing follows on.
-      std::stable_sort(edges.begin(), edges.end(), [](const auto& a, const auto& b) { return a.TShape().get() < b.TShape().get(); });
+      std::stable_sort(edges.begin(), edges.end(),
+                       [](const auto& a, const auto& b) { return a.TShape().get() < b.TShape().get(); });
       for (const TopoDS_Shape& edge : edges) builder.Add(wire, edge);
       builder.Add(face, wire);
     }

@@ -44,7 +44,8 @@ TEST(BadInputs, EmptyAndNoise) {
 
 TEST(BadInputs, NoiseBehindARightBeginning) {
   expect_unreadable(test::write_file("a.step", "ISO-10303-21;\n" + noise(20000)));
-  expect_unreadable(test::write_file("b.brep", "DBRep_DrawableShape\n\nCASCADE Topology V1, (c) Matra-Datavision\n" + noise(20000)));
+  expect_unreadable(test::write_file(
+      "b.brep", "DBRep_DrawableShape\n\nCASCADE Topology V1, (c) Matra-Datavision\n" + noise(20000)));
   expect_unreadable(test::write_file("c.brep", "\nOpen CASCADE Topology V4 (c)\n" + noise(20000)));
   expect_unreadable(test::write_file("d.FCStd", "PK\x03\x04" + noise(20000)));
   expect_unreadable(test::write_file("e.step.gz", "\x1f\x8b\x08" + noise(20000)));
@@ -53,8 +54,8 @@ TEST(BadInputs, NoiseBehindARightBeginning) {
 TEST(BadInputs, ACutStepFileIsRefusedOrReadInPart) {
   const std::string whole = test::read_file(sample("bracket.step"));
   for (const double part : {0.02, 0.3, 0.7, 0.95}) {
-    const std::string path =
-        test::write_file("cut.step", whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
+    const std::string path = test::write_file(
+        "cut.step", whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
     const Result<Model> model = test::import_file(path);
     if (!model.ok()) {
       EXPECT_EQ(model.status().code, StatusCode::unreadable) << model.status().message;
@@ -72,8 +73,10 @@ TEST(BadInputs, ReferencesToNothing) {
   for (int i = 0; (at = text.find("VERTEX_POINT('',#", at)) != std::string::npos; ++i, at += 10)
     if (i % 2 == 0) text.replace(at + 17, 1, "99999");
   const Result<Model> model = test::import_file(test::write_file("dangling.step", text));
-  if (model.ok()) EXPECT_TRUE(check(*model).ok());
-  else EXPECT_EQ(model.status().message.find('\n'), std::string::npos) << model.status().message;
+  if (model.ok())
+    EXPECT_TRUE(check(*model).ok());
+  else
+    EXPECT_EQ(model.status().message.find('\n'), std::string::npos) << model.status().message;
 
   expect_unreadable(test::write_file(
       "nothing.step",
@@ -86,7 +89,8 @@ TEST(BadInputs, AShapeWithoutFaces) {
   expect_unreadable(test::write_file(
       "point.brep",
       "DBRep_DrawableShape\n\nCASCADE Topology V1, (c) Matra-Datavision\nLocations 0\nCurve2ds 0\nCurves 0\n"
-      "Polygon3D 0\nPolygonOnTriangulations 0\nSurfaces 0\nTriangulations 0\n\nTShapes 1\nVe\n1e-07\n0 0 0\n0 0\n\n"
+      "Polygon3D 0\nPolygonOnTriangulations 0\nSurfaces 0\nTriangulations 0\n\nTShapes 1\nVe\n1e-07\n0 0 "
+      "0\n0 0\n\n"
       "0101101\n*\n\n+1 0 \n0\n"));
 }
 
@@ -103,10 +107,13 @@ TEST(BadInputs, RandomDamage) {
   for (unsigned seed = 0; seed < 12; ++seed) {
     std::mt19937 random(seed);
     std::string text = whole;
-    for (int i = 0; i < 1 << (seed % 6); ++i) text[random() % text.size()] = static_cast<char>(' ' + random() % 95);
+    for (int i = 0; i < 1 << (seed % 6); ++i)
+      text[random() % text.size()] = static_cast<char>(' ' + random() % 95);
     const Result<Model> model = test::import_file(test::write_file("damaged.step", text));
-    if (model.ok()) EXPECT_TRUE(check(*model).ok());
-    else EXPECT_EQ(model.status().message.find('\n'), std::string::npos) << model.status().message;
+    if (model.ok())
+      EXPECT_TRUE(check(*model).ok());
+    else
+      EXPECT_EQ(model.status().message.find('\n'), std::string::npos) << model.status().message;
   }
 }
 

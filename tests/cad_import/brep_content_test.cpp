@@ -1,10 +1,10 @@
 #include "../../cad_import/reader/brep_content.h"
 
+#include <gtest/gtest.h>
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRepTools.hxx>
 #include <BinTools.hxx>
 #include <TopExp_Explorer.hxx>
-#include <gtest/gtest.h>
 
 #include <chrono>
 #include <sstream>
@@ -17,12 +17,16 @@ namespace {
 std::string written(bool binary) {
   std::ostringstream out;
   const TopoDS_Shape shape = BRepPrimAPI_MakeTorus(3, 1).Shape();
-  if (binary) BinTools::Write(shape, out);
-  else BRepTools::Write(shape, out);
+  if (binary)
+    BinTools::Write(shape, out);
+  else
+    BRepTools::Write(shape, out);
   return out.str();
 }
 
-bool has_face(const TopoDS_Shape& shape) { return !shape.IsNull() && TopExp_Explorer(shape, TopAbs_FACE).More(); }
+bool has_face(const TopoDS_Shape& shape) {
+  return !shape.IsNull() && TopExp_Explorer(shape, TopAbs_FACE).More();
+}
 
 TEST(BrepContent, TextAndBinary) {
   EXPECT_EQ(find_file_kind(written(false)), FileKind::brep_text);
@@ -36,7 +40,8 @@ TEST(BrepContent, NoTruncationHangs) {
   for (const bool binary : {false, true}) {
     const std::string whole = written(binary);
     const auto start = std::chrono::steady_clock::now();
-    for (std::size_t n = 0; n + 8 < whole.size(); n += 7) EXPECT_FALSE(has_face(read_brep_content(whole.substr(0, n)))) << n;
+    for (std::size_t n = 0; n + 8 < whole.size(); n += 7)
+      EXPECT_FALSE(has_face(read_brep_content(whole.substr(0, n)))) << n;
     EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 30);
   }
 }

@@ -22,8 +22,8 @@ double largest_miss(const Surface& surface, const Curve2& pcurve, const Curve3& 
   return worst;
 }
 
-// A spline that winds around a cylinder of radius 2 more than once: points of a helix, interpolated linearly in between by
-// the poles' polygon, so it does not lie on the cylinder exactly.
+// A spline that winds around a cylinder of radius 2 more than once: points of a helix, interpolated linearly
+// in between by the poles' polygon, so it does not lie on the cylinder exactly.
 Curve3 coil(int turns, int poles) {
   Bspline3 s;
   s.degree = 3;
@@ -68,7 +68,8 @@ TEST(CurveFit, AProjectionFindsThePointItCameFrom) {
   s.count_u = s.count_v = 6;
   s.knots_u = s.knots_v = {0, 0, 0, 0, 1, 2, 3, 3, 3, 3};
   for (int i = 0; i < 6; ++i)
-    for (int j = 0; j < 6; ++j) s.poles.push_back({i * 1.0, j * 1.0, 0.5 * std::sin(i * 1.3) * std::cos(j * 0.9)});
+    for (int j = 0; j < 6; ++j)
+      s.poles.push_back({i * 1.0, j * 1.0, 0.5 * std::sin(i * 1.3) * std::cos(j * 0.9)});
   const Surface surface{s};
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(0, 3);
@@ -91,9 +92,12 @@ TEST(CurveTools, EveryKindLiesInItsPlaneExactly) {
   Frame3 plane{{1, 2, 3}, normalized(Vec3{1, 1, 0}), normalized(Vec3{-1, 1, 1}), {}};
   plane.z = normalized(cross(plane.x, plane.y));
   const Vec3 x = normalized(plane.x + plane.y * 0.5), y = cross(plane.z, x), c = plane.origin + plane.x * 2;
-  const Curve3 curves[] = {Curve3{LineOf<Vec3>{c, x * 3}}, Curve3{CircleOf<Vec3>{c, x, y, 2}},
-                           Curve3{CircleOf<Vec3>{c, x, -y, 2}}, Curve3{EllipseOf<Vec3>{c, x, y, 3, 1}},
-                           Curve3{ParabolaOf<Vec3>{c, x, -y, 0.7}}, Curve3{HyperbolaOf<Vec3>{c, x, y, 2, 1}},
+  const Curve3 curves[] = {Curve3{LineOf<Vec3>{c, x * 3}},
+                           Curve3{CircleOf<Vec3>{c, x, y, 2}},
+                           Curve3{CircleOf<Vec3>{c, x, -y, 2}},
+                           Curve3{EllipseOf<Vec3>{c, x, y, 3, 1}},
+                           Curve3{ParabolaOf<Vec3>{c, x, -y, 0.7}},
+                           Curve3{HyperbolaOf<Vec3>{c, x, y, 2, 1}},
                            Curve3{Bspline3{2, {0, 0, 0, 1, 1, 1}, {c, c + x, c + y}, {1, 0.5, 2}, false}}};
   const Surface surface{Plane{plane}};
   for (const Curve3& curve : curves) {
@@ -110,7 +114,8 @@ TEST(CurveTools, MovedParametersMeanTheSamePoints) {
   for (const Curve2& curve : {spline, line}) {
     const auto moved = reparametrized(curve, 0.2, 0.5);
     ASSERT_TRUE(moved);
-    for (const double t : {0.0, 0.3, 1.6}) EXPECT_LT(length(point_at(*moved, t) - point_at(curve, 0.2 + 0.5 * t)), 1e-14);
+    for (const double t : {0.0, 0.3, 1.6})
+      EXPECT_LT(length(point_at(*moved, t) - point_at(curve, 0.2 + 0.5 * t)), 1e-14);
   }
   const auto turned = reparametrized(circle, 0.7, 1);
   ASSERT_TRUE(turned);

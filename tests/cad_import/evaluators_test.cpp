@@ -1,11 +1,11 @@
 // Our curves and surfaces against OCCT's own evaluators, on every face and edge of real and shipped files.
+#include <gtest/gtest.h>
 #include <BRepAdaptor_Curve.hxx>
 #include <BRepAdaptor_Surface.hxx>
 #include <BRep_Tool.hxx>
 #include <TopExp.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
-#include <gtest/gtest.h>
 
 #include <random>
 
@@ -22,7 +22,8 @@ void compare(const Vec3& ours, const gp_XYZ& theirs, double scale, double tolera
   EXPECT_LE(distance(ours, to_vec(theirs)), tolerance * scale) << what;
 }
 
-void compare_surface(const Surface& surface, const Face& face, const TopoDS_Face& shape, std::mt19937& random) {
+void compare_surface(const Surface& surface, const Face& face, const TopoDS_Face& shape,
+                     std::mt19937& random) {
   const BRepAdaptor_Surface theirs(shape, false);
   std::uniform_real_distribution<double> unit(0, 1);
   const Box2& box = face.uv_box;
@@ -40,11 +41,14 @@ void compare_surface(const Surface& surface, const Face& face, const TopoDS_Face
     const SurfaceJet s = evaluate(surface, u, v, 2);
     const double size = length(s.p) + box.size().x * length(s.pu) + box.size().y * length(s.pv) + 1e-3;
     compare(s.p, p.XYZ(), size, 1e-12, "point");
-    if (i < 4) continue;  // a corner may lie on a knot, where OCCT may take the derivatives from the other side
-    const double first = length(s.pu) + length(s.pv) + 1e-9 * size, second = length(s.puu) + length(s.puv) + length(s.pvv);
+    if (i < 4)
+      continue;  // a corner may lie on a knot, where OCCT may take the derivatives from the other side
+    const double first = length(s.pu) + length(s.pv) + 1e-9 * size,
+                 second = length(s.puu) + length(s.puv) + length(s.pvv);
     compare(s.pu, du.XYZ(), first, 1e-9, "Su");
     compare(s.pv, dv.XYZ(), first, 1e-9, "Sv");
-    const double shortest = std::min(box.size().x, box.size().y), rates = second + first / shortest + size / (shortest * shortest);
+    const double shortest = std::min(box.size().x, box.size().y),
+                 rates = second + first / shortest + size / (shortest * shortest);
     compare(s.puu, duu.XYZ(), rates, 1e-8, "Suu");
     compare(s.puv, duv.XYZ(), rates, 1e-8, "Suv");
     compare(s.pvv, dvv.XYZ(), rates, 1e-8, "Svv");
@@ -105,7 +109,8 @@ TEST_P(Evaluators, AgreeWithOcct) {
 INSTANTIATE_TEST_SUITE_P(Files, Evaluators, testing::ValuesIn(test::varied_files()));
 
 TEST(EvaluatorsOfSamples, AgreeWithOcct) {
-  for (const char* name : {"bracket.step", "assembly.step", "freeform.step"}) compare_file(test::sample(name));
+  for (const char* name : {"bracket.step", "assembly.step", "freeform.step"})
+    compare_file(test::sample(name));
 }
 
 }  // namespace

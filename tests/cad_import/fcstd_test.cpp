@@ -1,8 +1,8 @@
 // FreeCAD documents as written here, member by member.
-#include <BRepPrimAPI_MakeBox.hxx>
-#include <BRepTools.hxx>
 #include <gtest/gtest.h>
 #include <zip.h>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepTools.hxx>
 
 #include <map>
 #include <sstream>
@@ -34,8 +34,8 @@ std::string archive(const std::string& name, const std::map<std::string, std::st
 
 std::string placement(double x, double y, double z) {
   std::ostringstream out;
-  out << "<Property name=\"Placement\" type=\"App::PropertyPlacement\"><PropertyPlacement Px=\"" << x << "\" Py=\"" << y
-      << "\" Pz=\"" << z << "\" Q0=\"0\" Q1=\"0\" Q2=\"0\" Q3=\"1\"/></Property>";
+  out << "<Property name=\"Placement\" type=\"App::PropertyPlacement\"><PropertyPlacement Px=\"" << x
+      << "\" Py=\"" << y << "\" Pz=\"" << z << "\" Q0=\"0\" Q1=\"0\" Q2=\"0\" Q3=\"1\"/></Property>";
   return out.str();
 }
 std::string shape_property(const std::string& file) {
@@ -62,8 +62,10 @@ std::string view(const std::map<std::string, std::string>& providers) {
     data += "<ViewProvider name=\"" + name + "\"><Properties>" + properties + "</Properties></ViewProvider>";
   return "<Document><ViewProviderData>" + data + "</ViewProviderData></Document>";
 }
-const std::string kShown = "<Property name=\"Visibility\" type=\"App::PropertyBool\"><Bool value=\"true\"/></Property>";
-const std::string kHidden = "<Property name=\"Visibility\" type=\"App::PropertyBool\"><Bool value=\"false\"/></Property>";
+const std::string kShown =
+    "<Property name=\"Visibility\" type=\"App::PropertyBool\"><Bool value=\"true\"/></Property>";
+const std::string kHidden =
+    "<Property name=\"Visibility\" type=\"App::PropertyBool\"><Bool value=\"false\"/></Property>";
 
 Result<Model> import(const std::string& path) {
   ImportRequest request;
@@ -79,20 +81,26 @@ const TopoDS_Shape& box() {
 TEST(Fcstd, PlacementsOfContainersAddUp) {
   gp_Trsf own;
   own.SetTranslation(gp_Vec(1, 0, 0));
-  const std::string group = "<Property name=\"Group\" type=\"App::PropertyLinkList\"><LinkList count=\"1\"><Link value=\"Box\"/></LinkList></Property>";
+  const std::string group =
+      "<Property name=\"Group\" type=\"App::PropertyLinkList\"><LinkList count=\"1\"><Link "
+      "value=\"Box\"/></LinkList></Property>";
   // Once with the object's placement in the shape as well, as FreeCAD writes it, once without.
   for (const TopoDS_Shape& shape : {box().Moved(own), box()}) {
-    const auto model = import(archive("places.FCStd", {{"Document.xml", document({{"App::Part", "Part", group + placement(10, 0, 0)},
-                                                                                   {"Part::Box", "Box", shape_property("s.brp") + placement(1, 0, 0)}})},
-                                                       {"GuiDocument.xml", view({{"Part", kShown}, {"Box", kShown}})},
-                                                       {"s.brp", brep(shape)}}));
+    const auto model = import(archive(
+        "places.FCStd",
+        {{"Document.xml", document({{"App::Part", "Part", group + placement(10, 0, 0)},
+                                    {"Part::Box", "Box", shape_property("s.brp") + placement(1, 0, 0)}})},
+         {"GuiDocument.xml", view({{"Part", kShown}, {"Box", kShown}})},
+         {"s.brp", brep(shape)}}));
     ASSERT_TRUE(model.ok()) << model.status().message;
     EXPECT_NEAR(bounding_box(*model).lo.x, 11, 1e-6);
   }
 }
 
 TEST(Fcstd, AHiddenContainerHidesWhatIsInIt) {
-  const std::string group = "<Property name=\"Group\" type=\"App::PropertyLinkList\"><LinkList count=\"1\"><Link value=\"Box\"/></LinkList></Property>";
+  const std::string group =
+      "<Property name=\"Group\" type=\"App::PropertyLinkList\"><LinkList count=\"1\"><Link "
+      "value=\"Box\"/></LinkList></Property>";
   const std::map<std::string, std::string> members = {
       {"Document.xml", document({{"App::Part", "Part", group + placement(0, 0, 0)},
                                  {"Part::Box", "Box", shape_property("s.brp")},
@@ -106,33 +114,40 @@ TEST(Fcstd, AHiddenContainerHidesWhatIsInIt) {
 }
 
 TEST(Fcstd, WithoutAViewWhatNothingElseUsesIsShown) {
-  const std::string uses = "<Property name=\"Base\" type=\"App::PropertyLink\"><Link value=\"Box\"/></Property>";
-  const auto model = import(archive("headless.FCStd", {{"Document.xml", document({{"Part::Box", "Box", shape_property("s.brp")},
-                                                                                  {"Part::Cut", "Cut", shape_property("s.brp") + uses}})},
-                                                       {"s.brp", brep(box())}}));
+  const std::string uses =
+      "<Property name=\"Base\" type=\"App::PropertyLink\"><Link value=\"Box\"/></Property>";
+  const auto model = import(archive(
+      "headless.FCStd", {{"Document.xml", document({{"Part::Box", "Box", shape_property("s.brp")},
+                                                    {"Part::Cut", "Cut", shape_property("s.brp") + uses}})},
+                         {"s.brp", brep(box())}}));
   ASSERT_TRUE(model.ok()) << model.status().message;
   ASSERT_EQ(model->instances.size(), 1u);
   EXPECT_EQ(model->instances[0].name, "Cut");
 }
 
 TEST(Fcstd, ALinkShowsItsObjectElsewhere) {
-  const std::string link = "<Property name=\"LinkedObject\" type=\"App::PropertyXLink\"><XLink file=\"\" name=\"Box\"/></Property>";
-  const auto model = import(archive("link.FCStd", {{"Document.xml", document({{"Part::Box", "Box", shape_property("s.brp") + placement(1, 0, 0)},
-                                                                              {"App::Link", "Link", link + placement(7, 0, 0)}})},
-                                                   {"GuiDocument.xml", view({{"Box", kShown}, {"Link", kShown}})},
-                                                   {"s.brp", brep(box())}}));
+  const std::string link =
+      "<Property name=\"LinkedObject\" type=\"App::PropertyXLink\"><XLink file=\"\" "
+      "name=\"Box\"/></Property>";
+  const auto model = import(
+      archive("link.FCStd",
+              {{"Document.xml", document({{"Part::Box", "Box", shape_property("s.brp") + placement(1, 0, 0)},
+                                          {"App::Link", "Link", link + placement(7, 0, 0)}})},
+               {"GuiDocument.xml", view({{"Box", kShown}, {"Link", kShown}})},
+               {"s.brp", brep(box())}}));
   ASSERT_TRUE(model.ok()) << model.status().message;
   EXPECT_EQ(model->instances.size(), 2u);
   EXPECT_NEAR(bounding_box(*model).hi.x, 8, 1e-6);
 }
 
 TEST(Fcstd, WhatIsDamagedIsNamedAndTheRestIsRead) {
-  const auto model = import(archive("partly.FCStd", {{"Document.xml", document({{"Part::Box", "Good", shape_property("s.brp")},
-                                                                                {"Part::Box", "Bad", shape_property("t.brp")},
-                                                                                {"Part::Box", "Gone", shape_property("u.brp")}})},
-                                                     {"GuiDocument.xml", view({{"Good", kShown}, {"Bad", kShown}, {"Gone", kShown}})},
-                                                     {"s.brp", brep(box())},
-                                                     {"t.brp", "CASCADE Topology V1, (c) Matra-Datavision\nLocations x"}}));
+  const auto model = import(archive(
+      "partly.FCStd", {{"Document.xml", document({{"Part::Box", "Good", shape_property("s.brp")},
+                                                  {"Part::Box", "Bad", shape_property("t.brp")},
+                                                  {"Part::Box", "Gone", shape_property("u.brp")}})},
+                       {"GuiDocument.xml", view({{"Good", kShown}, {"Bad", kShown}, {"Gone", kShown}})},
+                       {"s.brp", brep(box())},
+                       {"t.brp", "CASCADE Topology V1, (c) Matra-Datavision\nLocations x"}}));
   ASSERT_TRUE(model.ok()) << model.status().message;
   EXPECT_EQ(model->instances.size(), 1u);
   ASSERT_EQ(model->skipped.size(), 2u);

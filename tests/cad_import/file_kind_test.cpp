@@ -7,7 +7,9 @@
 namespace dupin {
 namespace {
 
-FileKind kind_of(std::string_view text) { return find_file_kind(text); }
+FileKind kind_of(std::string_view text) {
+  return find_file_kind(text);
+}
 
 std::string iges_line(std::string_view text, char section, int number) {
   std::string line(text);

@@ -12,7 +12,9 @@
 namespace dupin::test {
 namespace fs = std::filesystem;
 
-std::string sample(const std::string& name) { return std::string(DUPIN_SAMPLES) + "/" + name; }
+std::string sample(const std::string& name) {
+  return std::string(DUPIN_SAMPLES) + "/" + name;
+}
 
 std::string data(const std::string& name) {
   const char* folder = std::getenv("DUPIN_DATA");

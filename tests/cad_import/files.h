@@ -24,8 +24,8 @@ Result<Model> import_file(const std::string& path);
 
 }  // namespace dupin::test
 
-#define DUPIN_NEED_DATA(variable, name)                         \
-  const std::string variable = ::dupin::test::data(name);      \
+#define DUPIN_NEED_DATA(variable, name)                   \
+  const std::string variable = ::dupin::test::data(name); \
   if (variable.empty()) GTEST_SKIP() << "no " << name << " in $DUPIN_DATA"
 
 #endif

@@ -26,14 +26,17 @@ Color linear(int rgb) {
   };
   return {channel(rgb >> 16 & 255), channel(rgb >> 8 & 255), channel(rgb & 255), 1};
 }
-const Color kPaint = linear(0x2f6f8f), kBrass = linear(0xd6a84b), kSteel = linear(0xb4b9c0), kRed = linear(0xc8452f);
+const Color kPaint = linear(0x2f6f8f), kBrass = linear(0xd6a84b), kSteel = linear(0xb4b9c0),
+            kRed = linear(0xc8452f);
 
 bool alike(const std::optional<Color>& a, const Color& b) {
-  return a && std::abs(a->r - b.r) < 2e-3 && std::abs(a->g - b.g) < 2e-3 && std::abs(a->b - b.b) < 2e-3 && a->a == b.a;
+  return a && std::abs(a->r - b.r) < 2e-3 && std::abs(a->g - b.g) < 2e-3 && std::abs(a->b - b.b) < 2e-3 &&
+         a->a == b.a;
 }
 
 long count_faces(const Part& part, const Color& color) {
-  return std::count_if(part.faces.begin(), part.faces.end(), [&](const Face& f) { return alike(f.color, color); });
+  return std::count_if(part.faces.begin(), part.faces.end(),
+                       [&](const Face& f) { return alike(f.color, color); });
 }
 
 TEST(Formats, TheBracketIsOneClosedPartWithColouredFaces) {
@@ -65,17 +68,21 @@ TEST(Formats, TheAssemblyStoresRepeatedPartsOnce) {
   EXPECT_EQ(face_instance_count(*model), 270u);
   std::map<std::string, int> placed;
   for (const Instance& instance : model->instances) ++placed[model->parts[instance.part].name];
-  EXPECT_EQ(placed, (std::map<std::string, int>{
-                        {"flange", 2}, {"shaft", 2}, {"key", 2}, {"washer 8", 12}, {"bolt M8", 6}, {"nut M8", 6}}));
+  EXPECT_EQ(placed,
+            (std::map<std::string, int>{
+                {"flange", 2}, {"shaft", 2}, {"key", 2}, {"washer 8", 12}, {"bolt M8", 6}, {"nut M8", 6}}));
   const auto named = [&](const std::string& name) {
-    return std::find_if(model->instances.begin(), model->instances.end(), [&](const Instance& i) { return i.name == name; });
+    return std::find_if(model->instances.begin(), model->instances.end(),
+                        [&](const Instance& i) { return i.name == name; });
   };
   const auto nut = named("shaft coupling/fastener 4/nut"), key = named("shaft coupling/left key");
   ASSERT_NE(nut, model->instances.end());
   ASSERT_NE(key, model->instances.end());
   EXPECT_TRUE(alike(key->color, kRed));
   EXPECT_TRUE(alike(model->parts[key->part].color, kBrass));
-  EXPECT_EQ(std::count_if(model->instances.begin(), model->instances.end(), [](const Instance& i) { return i.color.has_value(); }), 1);
+  EXPECT_EQ(std::count_if(model->instances.begin(), model->instances.end(),
+                          [](const Instance& i) { return i.color.has_value(); }),
+            1);
   // The fourth fastener stands opposite the first: half a turn around the x axis.
   const auto first = named("shaft coupling/fastener 1/nut");
   ASSERT_NE(first, model->instances.end());
@@ -94,7 +101,8 @@ TEST(Formats, UnitsBecomeMillimetres) {
   DUPIN_NEED_DATA(inch, "cad/occt-import-js/cube-in.step");
   Box3 first;
   for (const char* name : {"in", "m", "mm"}) {
-    const Result<Model> model = import_file(test::data(std::string("cad/occt-import-js/cube-") + name + ".step"));
+    const Result<Model> model =
+        import_file(test::data(std::string("cad/occt-import-js/cube-") + name + ".step"));
     ASSERT_TRUE(model.ok()) << name;
     const Box3 box = bounding_box(*model);
     if (first.empty()) first = box;
@@ -126,7 +134,9 @@ TEST(Formats, Iges) {
   ASSERT_TRUE(model.ok()) << model.status().message;
   EXPECT_EQ(model->format, "IGES");
   EXPECT_GE(face_instance_count(*model) + model->skipped.size(), 75u);
-  EXPECT_GT(std::count_if(model->parts[0].faces.begin(), model->parts[0].faces.end(), [](const Face& f) { return alike(f.color, linear(0xcccccc)); }), 10);
+  EXPECT_GT(std::count_if(model->parts[0].faces.begin(), model->parts[0].faces.end(),
+                          [](const Face& f) { return alike(f.color, linear(0xcccccc)); }),
+            10);
 }
 
 TEST(Formats, FcstdHasTheFacesColoursOfItsView) {
@@ -138,7 +148,9 @@ TEST(Formats, FcstdHasTheFacesColoursOfItsView) {
   const Part& part = model->parts[0];
   EXPECT_EQ(part.name, "Cube");
   EXPECT_TRUE(part.closed);
-  EXPECT_EQ(count_faces(part, linear(0x00ff00)) + count_faces(part, linear(0xff0000)) + count_faces(part, linear(0x0000ff)), 2);
+  EXPECT_EQ(count_faces(part, linear(0x00ff00)) + count_faces(part, linear(0xff0000)) +
+                count_faces(part, linear(0x0000ff)),
+            2);
   EXPECT_EQ(count_faces(part, linear(0xcccccc)), 3);
   EXPECT_NEAR(bounding_box(*model).diagonal(), std::sqrt(300.0), 1e-5);
 }

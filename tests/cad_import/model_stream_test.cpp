@@ -37,13 +37,14 @@ Model one_of_everything() {
                    Surface{Revolution{{}, {0, 0, 1}, spline}},
                    Surface{Extrusion{circle, {0, 0, 1}}},
                    Surface{OffsetSurface{std::make_shared<const Surface>(patch()), 0.5}}};
-  const Curve3 curves[] = {line,
-                           circle,
-                           Curve3{EllipseOf<Vec3>{{}, {1, 0, 0}, {0, 1, 0}, 2, 1}},
-                           Curve3{ParabolaOf<Vec3>{{}, {1, 0, 0}, {0, 1, 0}, 1}},
-                           Curve3{HyperbolaOf<Vec3>{{}, {1, 0, 0}, {0, 1, 0}, 2, 1}},
-                           spline,
-                           Curve3{OffsetCurveOf<Vec3>{std::make_shared<const Curve3>(circle), 0.5, {0, 0, 1}}}};
+  const Curve3 curves[] = {
+      line,
+      circle,
+      Curve3{EllipseOf<Vec3>{{}, {1, 0, 0}, {0, 1, 0}, 2, 1}},
+      Curve3{ParabolaOf<Vec3>{{}, {1, 0, 0}, {0, 1, 0}, 1}},
+      Curve3{HyperbolaOf<Vec3>{{}, {1, 0, 0}, {0, 1, 0}, 2, 1}},
+      spline,
+      Curve3{OffsetCurveOf<Vec3>{std::make_shared<const Curve3>(circle), 0.5, {0, 0, 1}}}};
   for (const Curve3& curve : curves) part.edges.push_back({curve, 0, 1, 1e-7, false});
   part.edges.push_back({std::nullopt, 0, 1, 1e-7, true});
   Face& face = part.faces.emplace_back();

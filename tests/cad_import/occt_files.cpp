@@ -20,7 +20,9 @@ reader::PartSource all_faces(const TopoDS_Shape& shape) {
   return source;
 }
 
-reader::BuiltPart build(const TopoDS_Shape& shape) { return reader::build_part(all_faces(shape)); }
+reader::BuiltPart build(const TopoDS_Shape& shape) {
+  return reader::build_part(all_faces(shape));
+}
 
 const std::vector<std::string>& varied_files() {
   static const std::vector<std::string> kFiles{"cad/nist/nist_ctc_05_asme1_ap242.stp",
@@ -60,10 +62,12 @@ int side_of_loops(const Part& part, const Face& face, Vec2 q) {
         for (int k = 1; k <= 24; ++k) {
           const Vec2 b = point_at(trim.pcurve, stops[s] + (stops[s + 1] - stops[s]) * k / 24);
           // Near, measured in parts of the face's box.
-          const Vec2 d{(b.x - a.x) / size.x, (b.y - a.y) / size.y}, w{(q.x - a.x) / size.x, (q.y - a.y) / size.y};
+          const Vec2 d{(b.x - a.x) / size.x, (b.y - a.y) / size.y},
+              w{(q.x - a.x) / size.x, (q.y - a.y) / size.y};
           const double along = dot(d, d) > 0 ? std::clamp(dot(w, d) / dot(d, d), 0.0, 1.0) : 0;
           if (length(w - d * along) < 0.01) return 0;
-          if ((a.y > q.y) != (b.y > q.y) && q.x < a.x + (b.x - a.x) * (q.y - a.y) / (b.y - a.y)) inside = !inside;
+          if ((a.y > q.y) != (b.y > q.y) && q.x < a.x + (b.x - a.x) * (q.y - a.y) / (b.y - a.y))
+            inside = !inside;
           a = b;
         }
       }

@@ -1,4 +1,5 @@
-// A reader that crashes, hangs, lies or dies must never take its caller along. The readers here are shell scripts.
+// A reader that crashes, hangs, lies or dies must never take its caller along. The readers here are shell
+// scripts.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/stat.h>
@@ -97,7 +98,8 @@ TEST(ReaderProcess, AnEndWithoutAnAnswerIsReported) {
 
 TEST(ReaderProcess, GarbageIsRefused) {
   expect_one_line(run(script("noise", "head -c 100000 /dev/urandom >&3")), StatusCode::unreadable, "garbage");
-  expect_one_line(run(answering("kind", frame(static_cast<FrameKind>(9), ""))), StatusCode::unreadable, "garbage");
+  expect_one_line(run(answering("kind", frame(static_cast<FrameKind>(9), ""))), StatusCode::unreadable,
+                  "garbage");
   std::string huge = frame(FrameKind::stage, "");
   huge[8 + 5] = '\x7f';  // a stage of 2^46 bytes
   expect_one_line(run(answering("huge", huge)), StatusCode::unreadable, "garbage");
@@ -105,19 +107,22 @@ TEST(ReaderProcess, GarbageIsRefused) {
 
 TEST(ReaderProcess, ADamagedModelIsRefused) {
   std::string stream = write_model(Model{});
-  expect_one_line(run(answering("cut", frame(FrameKind::model, stream).substr(0, 40))), StatusCode::unreadable,
-                  "without an answer");
+  expect_one_line(run(answering("cut", frame(FrameKind::model, stream).substr(0, 40))),
+                  StatusCode::unreadable, "without an answer");
   stream.back() = static_cast<char>(stream.back() ^ 1);
-  expect_one_line(run(answering("flip", frame(FrameKind::model, stream))), StatusCode::unreadable, "checksum");
+  expect_one_line(run(answering("flip", frame(FrameKind::model, stream))), StatusCode::unreadable,
+                  "checksum");
 }
 
 TEST(ReaderProcess, AFailureKeepsItsKindAndBecomesOneLine) {
   const auto failing = [](StatusCode code) {
     const auto number = static_cast<std::uint32_t>(code);
-    return frame(FrameKind::failure, std::string(reinterpret_cast<const char*>(&number), 4) + "first\nsecond\x01line");
+    return frame(FrameKind::failure,
+                 std::string(reinterpret_cast<const char*>(&number), 4) + "first\nsecond\x01line");
   };
   expect_one_line(run(answering("limit", failing(StatusCode::limit))), StatusCode::limit, "second line");
-  expect_one_line(run(answering("other", failing(static_cast<StatusCode>(77)))), StatusCode::unreadable, "second line");
+  expect_one_line(run(answering("other", failing(static_cast<StatusCode>(77)))), StatusCode::unreadable,
+                  "second line");
 }
 
 TEST(ReaderProcess, AMissingReaderIsReported) {
@@ -132,8 +137,8 @@ TEST(ReaderProcess, TheCallerCanStopIt) {
   options.reader = script("patient", "sleep 100");
   int calls = 0;
   options.progress = [&](std::string_view, double) { return ++calls < 3; };
-  const double seconds =
-      seconds_of([&] { EXPECT_EQ(import_cad(sample("bracket.step"), options).status().code, StatusCode::cancelled); });
+  const double seconds = seconds_of(
+      [&] { EXPECT_EQ(import_cad(sample("bracket.step"), options).status().code, StatusCode::cancelled); });
   EXPECT_LT(seconds, 5);
 }
 

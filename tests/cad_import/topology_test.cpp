@@ -1,11 +1,11 @@
 // Loops, pcurves, closed parts and the count of faces, against OCCT's classifiers.
+#include <gtest/gtest.h>
 #include <BRepClass_FaceClassifier.hxx>
 #include <BRepGProp.hxx>
 #include <BRep_Tool.hxx>
 #include <GProp_GProps.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
@@ -42,7 +42,8 @@ void expect_pcurves_on_curves(const Part& part, const Face& face) {
       for (int i = 0; i <= 23; ++i) {  // not where the reader looked
         const double t = edge.t0 + (edge.t1 - edge.t0) * i / 23;
         const Vec2 q = point_at(trim.pcurve, t);
-        EXPECT_LE(distance(point_at(surface, q.x, q.y), point_at(*edge.curve, t)), edge.tolerance + 1e-9 * size);
+        EXPECT_LE(distance(point_at(surface, q.x, q.y), point_at(*edge.curve, t)),
+                  edge.tolerance + 1e-9 * size);
       }
     }
 }
@@ -51,7 +52,8 @@ void expect_same_region(const Part& part, const Face& face, const TopoDS_Face& s
                         int& different, int& compared) {
   std::uniform_real_distribution<double> unit(0, 1);
   for (int i = 0; i < 8; ++i) {
-    const Vec2 q = face.uv_box.lo + Vec2{face.uv_box.size().x * unit(random), face.uv_box.size().y * unit(random)};
+    const Vec2 q =
+        face.uv_box.lo + Vec2{face.uv_box.size().x * unit(random), face.uv_box.size().y * unit(random)};
     const int side = side_of_loops(part, face, q);
     if (side == 0) continue;
     ++compared;
@@ -148,7 +150,8 @@ TEST(TopologyOfSamples, TheBoxHoldsTheFacesAndLittleElse) {
     for (const Face& face : part.faces)
       for (int i = 0; i < 40; ++i)
         for (int j = 0; j < 40; ++j) {
-          const Vec2 q = face.uv_box.lo + Vec2{face.uv_box.size().x * (i + 0.5) / 40, face.uv_box.size().y * (j + 0.5) / 40};
+          const Vec2 q = face.uv_box.lo +
+                         Vec2{face.uv_box.size().x * (i + 0.5) / 40, face.uv_box.size().y * (j + 0.5) / 40};
           if (side_of_loops(part, face, q) > 0) sampled.add(point_at(part.surfaces[face.surface], q.x, q.y));
         }
     for (int k = 0; k < 8; ++k) EXPECT_TRUE(part.box.contains(sampled.corner(k))) << name;
