@@ -12,6 +12,7 @@ constexpr int kFirstPieces = 8;
 constexpr int kMaxDepth = 10;  // halvings of a first piece
 constexpr std::size_t kMaxPieces = 600;
 constexpr double kShortestStep = 1e-5;  // of a first piece
+constexpr int kMaxMarch = 1000;         // steps through one
 constexpr int kChecksPerPiece = 3;      // inside each piece
 
 template <class V>
@@ -190,6 +191,74 @@ bool too_far(const Surface& surface, Vec2 step) {
   return (turn_u > 0 && std::abs(step.x) > turn_u / 6) || (turn_v > 0 && std::abs(step.y) > turn_v / 6);
 }
 
+// A space curve as it falls onto a surface.
+struct Shadow {
+  const Surface& surface;
+  const Box2& domain;
+  const Curve3& curve;
+  double tolerance;
+
+  Node<Vec2> node(double t, const Vec2* near) const {
+    const CurveJet<Vec3> c = evaluate(curve, t, 1);
+    const Vec2 q = project(surface, domain, c[0], near);
+    return {t, q, tangent_parameters(evaluate(surface, q.x, q.y, 1), c[1])};
+  }
+  Vec2 ahead(const Node<Vec2>& from, double t) const {
+    return clamp_to(surface, domain, from.point + from.tangent * (t - from.t));
+  }
+  double miss(const Node<Vec2>& n) const {
+    return distance(point_at(surface, n.point.x, n.point.y), point_at(curve, n.t));
+  }
+
+  // Along the surface, from where the point should be. A tenth of the curve's own height above the surface
+  // does not matter.
+  double error(double t, const Vec2& q) const {
+    const Vec3 p = point_at(curve, t), on = point_at(surface, q.x, q.y);
+    if (distance(on, p) <= tolerance) return 0;
+    const Vec2 foot = project(surface, domain, p, &q);
+    const Vec3 nearest = point_at(surface, foot.x, foot.y);
+    return distance(on, nearest) - 0.1 * distance(nearest, p);
+  }
+
+  // The next node of a march, from the extrapolated point, or from where the march stands if that leads
+  // nearer.
+  Node<Vec2> follow(const Node<Vec2>& at, double t) const {
+    const Vec2 guess = ahead(at, t);
+    const Node<Vec2> extrapolated = node(t, &guess);
+    const bool jumps = too_far(surface, extrapolated.point - at.point);
+    if (!jumps && miss(extrapolated) <= tolerance) return extrapolated;
+    const Node<Vec2> stayed = node(t, &at.point);
+    return jumps || miss(stayed) < 0.5 * miss(extrapolated) - 1e-12 ? stayed : extrapolated;
+  }
+
+  // Small steps, smaller where the parameters move fast, keep to the same turn of a periodic surface.
+  Node<Vec2> march(Node<Vec2> at, double to) const {
+    const double from = at.t;
+    double done = 0, step = 1.0 / 8;
+    for (int i = 0; i < kMaxMarch && done < 1; ++i) {
+      step = std::min(step, 1 - done);
+      const Node<Vec2> next = follow(at, from + (to - from) * (done + step));
+      if (too_far(surface, next.point - at.point) && step > kShortestStep) {
+        step /= 4;
+        continue;
+      }
+      at = next, done += step, step *= 2;
+    }
+    return done < 1 ? node(to, &at.point) : at;
+  }
+
+  // The middle is the safest place to begin: ends may lie at poles and on seams.
+  std::vector<Node<Vec2>> trace(const std::vector<double>& parameters) const {
+    std::vector<Node<Vec2>> nodes(parameters.size());
+    const std::size_t middle = parameters.size() / 2;
+    nodes[middle] = node(parameters[middle], nullptr);
+    for (std::size_t i = middle; i + 1 < nodes.size(); ++i) nodes[i + 1] = march(nodes[i], parameters[i + 1]);
+    for (std::size_t i = middle; i > 0; --i) nodes[i - 1] = march(nodes[i], parameters[i - 1]);
+    for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i].t = parameters[i];
+    return nodes;
+  }
+};
+
 }  // namespace
 
 Vec2 project(const Surface& surface, const Box2& domain, const Vec3& p, const Vec2* near) {
@@ -209,59 +278,14 @@ Vec2 project(const Surface& surface, const Box2& domain, const Vec3& p, const Ve
 
 std::optional<Curve2> fit_pcurve(const Surface& surface, const Box2& domain, const Curve3& curve, double t0,
                                  double t1, double tolerance) {
-  const auto node_near = [&](double t, const Vec2* near) {
-    const CurveJet<Vec3> c = evaluate(curve, t, 1);
-    const Vec2 q = project(surface, domain, c[0], near);
-    return Node<Vec2>{t, q, tangent_parameters(evaluate(surface, q.x, q.y, 1), c[1])};
-  };
-  // The middle is the safest place to begin a search: ends may lie at poles and on seams.
-  const std::vector<double> parameters = first_parameters(breaks(curve, t0, t1, 2), t0, t1);
-  std::vector<Node<Vec2>> coarse(parameters.size());
-  const std::size_t middle = parameters.size() / 2;
-  coarse[middle] = node_near(parameters[middle], nullptr);
-  // Small steps, smaller where the parameters move fast, keep to the same turn of a periodic surface.
-  const auto march = [&](std::size_t from, std::size_t to) {
-    Node<Vec2> at = coarse[from];
-    const double whole = parameters[to] - parameters[from];
-    double done = 0, step = 1.0 / 8;
-    while (done < 1) {
-      step = std::min(step, 1 - done);
-      const double t = parameters[from] + whole * (done + step);
-      const Vec2 guess = clamp_to(surface, domain, at.point + at.tangent * (t - at.t));
-      const Node<Vec2> ahead = node_near(t, &guess), stay = node_near(t, &at.point);
-      const Vec3 p = point_at(curve, t);
-      const auto miss = [&](const Node<Vec2>& n) {
-        return distance(point_at(surface, n.point.x, n.point.y), p);
-      };
-      const bool extrapolated =
-          !(miss(stay) < 0.5 * miss(ahead) - 1e-12) && !too_far(surface, ahead.point - at.point);
-      const Node<Vec2>& next = extrapolated ? ahead : stay;
-      if (too_far(surface, next.point - at.point) && step > kShortestStep) {
-        step /= 4;
-        continue;
-      }
-      at = next, done += step, step *= 2;
-    }
-    at.t = parameters[to];
-    coarse[to] = at;
-  };
-  for (std::size_t i = middle; i + 1 < coarse.size(); ++i) march(i, i + 1);
-  for (std::size_t i = middle; i > 0; --i) march(i, i - 1);
-
+  const Shadow shadow{surface, domain, curve, tolerance};
+  const std::vector<Node<Vec2>> coarse = shadow.trace(first_parameters(breaks(curve, t0, t1, 2), t0, t1));
   Refinement<Vec2> fit;
   fit.tolerance = tolerance;
-  // Along the surface from where the point should be. A tenth of the curve's own height above the surface
-  // does not matter.
-  fit.error = [&](double t, const Vec2& q) {
-    const Vec3 p = point_at(curve, t), on = point_at(surface, q.x, q.y);
-    if (distance(on, p) <= tolerance) return 0.0;
-    const Vec2 foot = project(surface, domain, p, &q);
-    const Vec3 nearest = point_at(surface, foot.x, foot.y);
-    return distance(on, nearest) - 0.1 * distance(nearest, p);
-  };
+  fit.error = [&](double t, const Vec2& q) { return shadow.error(t, q); };
   fit.node_at = [&](double t, const Node<Vec2>& before) {
-    const Vec2 guess = clamp_to(surface, domain, before.point + before.tangent * (t - before.t));
-    return node_near(t, &guess);
+    const Vec2 guess = shadow.ahead(before, t);
+    return shadow.node(t, &guess);
   };
   fit.nodes.push_back(coarse.front());
   for (std::size_t i = 0; i + 1 < coarse.size(); ++i) fit.run(coarse[i], coarse[i + 1], kMaxDepth);
