@@ -15,7 +15,9 @@ template <class F>
 double largest_between(F&& f, double a, double c) {
   constexpr double kGolden = 0.6180339887498949;
   double x1 = c - kGolden * (c - a), x2 = a + kGolden * (c - a), f1 = f(x1), f2 = f(x2);
-  for (int i = 0; i < 60 && c - a > 1e-9 * (std::abs(a) + std::abs(c)); ++i) {
+  // Near its top the value's error is the square of the argument's.
+  const double enough = 1e-6 * (c - a);
+  for (int i = 0; i < 40 && c - a > enough; ++i) {
     if (f1 > f2)
       c = x2, x2 = x1, f2 = f1, x1 = c - kGolden * (c - a), f1 = f(x1);
     else
@@ -47,6 +49,9 @@ void for_each_extremum(const CurveOf<V>& curve, double t0, double t1, F&& add) {
         for (const double sign : {1.0, -1.0}) {
           const double here = sign * p[i][axis];
           if (!(here > sign * p[i - 1][axis] && here >= sign * p[i + 1][axis])) continue;
+          // Next to a top, samples differ by as much as it can rise above them.
+          const double drop = here - std::min(sign * p[i - 1][axis], sign * p[i + 1][axis]);
+          if (drop < 1e-13 * std::abs(here)) continue;
           V q = p[i];
           q[axis] = sign * largest_between([&](double t) { return sign * point_at(curve, t)[axis]; },
                                            at(i - 1), at(i + 1));
