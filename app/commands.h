@@ -1,4 +1,5 @@
-// The subcommands. Each adds its own options; `chosen` becomes what it does once the command line has named it.
+// The subcommands. Each adds its own options; `chosen` becomes what it does once the command line has named
+// it.
 #ifndef DUPIN_APP_COMMANDS_H
 #define DUPIN_APP_COMMANDS_H
 

@@ -26,10 +26,13 @@ struct PictureCompareOptions {
 };
 
 /// JSON has no infinity: equal pictures have a PSNR of null.
-Json finite(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+Json finite(double x) {
+  return std::isfinite(x) ? Json(x) : Json(nullptr);
+}
 
 Json quantiles(const Distribution& d) {
-  return {{"count", d.count}, {"mean", d.mean}, {"p50", d.p50}, {"p90", d.p90}, {"p99", d.p99}, {"p999", d.p999}, {"max", d.max}};
+  return {{"count", d.count}, {"mean", d.mean}, {"p50", d.p50}, {"p90", d.p90},
+          {"p99", d.p99},     {"p999", d.p999}, {"max", d.max}};
 }
 
 Json to_json(const GeometryMetrics& g) {
@@ -58,18 +61,20 @@ Json to_json(const PictureDifference& d) {
 
 void print(const char* name, const char* unit, const Distribution& d) {
   if (d.count)
-    std::printf("%-12s half below %.4g, 99 %% below %.4g, 99.9 %% below %.4g, largest %.4g %s\n", name, d.p50, d.p99, d.p999,
-                d.max, unit);
+    std::printf("%-12s half below %.4g, 99 %% below %.4g, 99.9 %% below %.4g, largest %.4g %s\n", name, d.p50,
+                d.p99, d.p999, d.max, unit);
 }
 
 void print_table(const PictureDifference& d) {
   if (d.color) {
     std::printf("RMSE         %.4f of 255\nPSNR         ", d.color->rmse);
-    std::printf(std::isfinite(d.color->psnr) ? "%.2f dB\n" : "infinite: the pictures are the same\n", d.color->psnr);
+    std::printf(std::isfinite(d.color->psnr) ? "%.2f dB\n" : "infinite: the pictures are the same\n",
+                d.color->psnr);
     std::printf("SSIM         %.6f\nFLIP         %.6f\n", d.color->ssim, d.color->flip);
   }
-  std::printf("silhouette   %llu pixels differ (%llu and %llu covered)\n", static_cast<unsigned long long>(d.silhouette),
-              static_cast<unsigned long long>(d.covered_a), static_cast<unsigned long long>(d.covered_b));
+  std::printf("silhouette   %llu pixels differ (%llu and %llu covered)\n",
+              static_cast<unsigned long long>(d.silhouette), static_cast<unsigned long long>(d.covered_a),
+              static_cast<unsigned long long>(d.covered_b));
   if (!d.geometry) return;
   const GeometryMetrics& g = *d.geometry;
   std::printf("interior     %llu pixels, %llu holes, %llu drawn outside, %llu normals opposed\n",
@@ -98,10 +103,14 @@ int run(const PictureCompareOptions& options) {
   const Result<PictureDifference> difference = compare(*a, *b, options.compare);
   if (!difference.ok()) return session.fail(difference.status());
   if (!options.diff.empty())
-    if (const Status status = write_diff(diff, *a, *b, options.compare); !status.ok()) return session.fail(status);
-  if (options.json) std::printf("%s\n", to_json(*difference).dump(2).c_str());
-  else print_table(*difference);
-  if (std::fflush(stdout) != 0) return session.fail({StatusCode::cannot_write, "standard output: cannot write"});
+    if (const Status status = write_diff(diff, *a, *b, options.compare); !status.ok())
+      return session.fail(status);
+  if (options.json)
+    std::printf("%s\n", to_json(*difference).dump(2).c_str());
+  else
+    print_table(*difference);
+  if (std::fflush(stdout) != 0)
+    return session.fail({StatusCode::cannot_write, "standard output: cannot write"});
   return kDone;
 }
 

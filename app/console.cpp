@@ -38,7 +38,8 @@ void ProgressBar::clear() {
 
 void say(const std::string& message) {
   std::string line = message;
-  std::replace_if(line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+  std::replace_if(
+      line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
   std::fprintf(stderr, "dupin: %s\n", line.c_str());
 }
 

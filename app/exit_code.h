@@ -10,14 +10,20 @@ inline constexpr int kDone = 0, kWrongUsage = 2, kUnreadable = 3, kPartial = 4, 
 
 inline int exit_code(StatusCode code) {
   switch (code) {
-    case StatusCode::ok: return kDone;
-    case StatusCode::invalid_argument: return kWrongUsage;
+    case StatusCode::ok:
+      return kDone;
+    case StatusCode::invalid_argument:
+      return kWrongUsage;
     case StatusCode::unreadable:
-    case StatusCode::cannot_write: return kUnreadable;
-    case StatusCode::partial: return kPartial;
+    case StatusCode::cannot_write:
+      return kUnreadable;
+    case StatusCode::partial:
+      return kPartial;
     case StatusCode::limit:
-    case StatusCode::cancelled: return kLimitHit;  // only a limit cancels work in the command
-    case StatusCode::no_device: return kNoDevice;
+    case StatusCode::cancelled:
+      return kLimitHit;  // only a limit cancels work in the command
+    case StatusCode::no_device:
+      return kNoDevice;
   }
   return kWrongUsage;
 }

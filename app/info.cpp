@@ -23,7 +23,8 @@ struct InfoOptions {
   bool json = false;
 };
 
-/// Face instances by what they lie on and by colour, and the triangles of faces that the file has only as such.
+/// Face instances by what they lie on and by colour, and the triangles of faces that the file has only as
+/// such.
 struct Counts {
   std::map<std::string, std::size_t> surfaces, colors;
   std::size_t triangles = 0;
@@ -43,7 +44,9 @@ Counts count(const Model& model) {
   return counts;
 }
 
-Json to_json(const Vec3& v) { return {v.x, v.y, v.z}; }
+Json to_json(const Vec3& v) {
+  return {v.x, v.y, v.z};
+}
 
 Json to_json(const Model& model, const std::string& file) {
   const Counts counts = count(model);
@@ -57,7 +60,8 @@ Json to_json(const Model& model, const std::string& file) {
   json["faces"] = {{"total", faces + skipped}, {"readable", faces}, {"by_surface", counts.surfaces}};
   if (counts.triangles) json["triangles"] = counts.triangles;
   const Box3 box = bounding_box(model);
-  json["bounding_box"] = box.empty() ? Json(nullptr) : Json{{"min", to_json(box.lo)}, {"max", to_json(box.hi)}};
+  json["bounding_box"] =
+      box.empty() ? Json(nullptr) : Json{{"min", to_json(box.lo)}, {"max", to_json(box.hi)}};
   json["colors"] = counts.colors;
   json["skipped"] = Json::array();
   for (const SkippedFace& face : model.skipped)
@@ -66,7 +70,9 @@ Json to_json(const Model& model, const std::string& file) {
   return json;
 }
 
-void row(const char* name, const std::string& text) { std::printf("%-13s %s\n", name, text.c_str()); }
+void row(const char* name, const std::string& text) {
+  std::printf("%-13s %s\n", name, text.c_str());
+}
 
 std::string list(const std::map<std::string, std::size_t>& counts) {
   std::string text;
@@ -86,8 +92,10 @@ void print_table(const Model& model, const std::string& file) {
   row("file", file);
   row("format", model.format);
   row("units", model.unit_note);
-  row("parts", std::to_string(model.parts.size()) + " in " + std::to_string(model.instances.size()) + " instances");
-  row("faces", std::to_string(faces + skipped) + (counts.surfaces.empty() ? "" : ": " + list(counts.surfaces)));
+  row("parts",
+      std::to_string(model.parts.size()) + " in " + std::to_string(model.instances.size()) + " instances");
+  row("faces",
+      std::to_string(faces + skipped) + (counts.surfaces.empty() ? "" : ": " + list(counts.surfaces)));
   if (counts.triangles) row("triangles", std::to_string(counts.triangles));
   row("colours", counts.colors.empty() ? "none" : list(counts.colors));
   if (const Box3 box = bounding_box(model); !box.empty()) {
@@ -97,7 +105,8 @@ void print_table(const Model& model, const std::string& file) {
   for (const std::string& note : model.notes) row("note", note);
   if (skipped) row("not readable", std::to_string(skipped) + (skipped == 1 ? " face" : " faces"));
   for (const SkippedFace& face : model.skipped)
-    row("", face.name + (face.count > 1 ? " (" + std::to_string(face.count) + " times)" : "") + ": " + face.reason);
+    row("", face.name + (face.count > 1 ? " (" + std::to_string(face.count) + " times)" : "") + ": " +
+                face.reason);
 }
 
 int run(const InfoOptions& options) {
@@ -106,10 +115,13 @@ int run(const InfoOptions& options) {
   if (!loaded.ok()) return session.fail(loaded.status());
   session.done();
   if (options.json)
-    std::printf("%s\n", to_json(loaded->model, options.file).dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+    std::printf(
+        "%s\n",
+        to_json(loaded->model, options.file).dump(2, ' ', false, Json::error_handler_t::replace).c_str());
   else
     print_table(loaded->model, options.file);
-  if (std::fflush(stdout) != 0) return session.fail({StatusCode::cannot_write, "standard output: cannot write"});
+  if (std::fflush(stdout) != 0)
+    return session.fail({StatusCode::cannot_write, "standard output: cannot write"});
   return options.common.strict && !loaded->model.skipped.empty() ? kPartial : kDone;
 }
 

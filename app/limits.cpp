@@ -18,7 +18,8 @@ namespace dupin::app {
 namespace {
 
 constexpr auto kPollInterval = std::chrono::milliseconds(10);
-// Work that can be stopped in an orderly way, and the reader with its own limit, get this long beyond the limit to do so.
+// Work that can be stopped in an orderly way, and the reader with its own limit, get this long beyond the
+// limit to do so.
 constexpr double kGraceSeconds = 0.5;
 
 [[noreturn]] void end_process(const std::string& why) {
@@ -28,9 +29,13 @@ constexpr double kGraceSeconds = 0.5;
   _exit(kLimitHit);
 }
 
-void out_of_memory() { end_process("out of memory"); }
+void out_of_memory() {
+  end_process("out of memory");
+}
 
-std::string megabytes(std::uint64_t bytes) { return std::to_string((bytes + 999'999) / 1'000'000) + " MB"; }
+std::string megabytes(std::uint64_t bytes) {
+  return std::to_string((bytes + 999'999) / 1'000'000) + " MB";
+}
 
 std::uint64_t peak_of(int who) {
   rusage usage{};
@@ -51,8 +56,12 @@ std::uint64_t resident_bytes() {
   return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
-std::uint64_t peak_resident_bytes() { return peak_of(RUSAGE_SELF); }
-std::uint64_t peak_child_resident_bytes() { return peak_of(RUSAGE_CHILDREN); }
+std::uint64_t peak_resident_bytes() {
+  return peak_of(RUSAGE_SELF);
+}
+std::uint64_t peak_child_resident_bytes() {
+  return peak_of(RUSAGE_CHILDREN);
+}
 
 Limits::Limits(double seconds, std::uint64_t bytes) : seconds_(seconds), bytes_(bytes) {
   std::set_new_handler(out_of_memory);
@@ -72,7 +81,9 @@ double Limits::elapsed() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
-double Limits::seconds_left() const { return seconds_ > 0 ? std::max(seconds_ - elapsed(), 1e-3) : 0; }
+double Limits::seconds_left() const {
+  return seconds_ > 0 ? std::max(seconds_ - elapsed(), 1e-3) : 0;
+}
 
 void Limits::watch() {
   std::unique_lock lock(mutex_);

@@ -11,9 +11,10 @@
 
 namespace dupin::app {
 
-/// Watches the process from a thread of its own. Work that reports progress is asked to stop when the time is over
-/// (`time_is_over`); work that does not, and any that takes more memory than allowed, ends with the process: unfinished outputs
-/// are removed, one line says why, the exit code is 5.
+/// Watches the process from a thread of its own. Work that reports progress is asked to stop when the time is
+/// over
+/// (`time_is_over`); work that does not, and any that takes more memory than allowed, ends with the process:
+/// unfinished outputs are removed, one line says why, the exit code is 5.
 class Limits {
  public:
   /// 0: no limit.

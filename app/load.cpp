@@ -50,8 +50,10 @@ Result<Loaded> load(Session& session, const std::vector<std::string>& files, dou
     options.progress = session.progress();
     Result<Model> model = import_cad(files[i], options);
     if (!model.ok()) return model.status();
-    if (i == 0) loaded.model = std::move(*model);
-    else merge(loaded.model, std::move(*model));
+    if (i == 0)
+      loaded.model = std::move(*model);
+    else
+      merge(loaded.model, std::move(*model));
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   loaded.import_seconds = std::max(0.0, seconds - loaded.model.mesh_seconds);

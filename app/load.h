@@ -16,8 +16,8 @@ struct Loaded {
   double import_seconds = 0;  ///< without the tessellation, which is Model::mesh_seconds
 };
 
-/// Reads the files and puts their models, each where it stands in its own space, into one. `mesh_deflection` as in
-/// ImportOptions.
+/// Reads the files and puts their models, each where it stands in its own space, into one. `mesh_deflection`
+/// as in ImportOptions.
 Result<Loaded> load(Session& session, const std::vector<std::string>& files, double mesh_deflection = 0);
 
 /// Adds what `other` holds to `model`.

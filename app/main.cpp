@@ -18,7 +18,8 @@ using dupin::app::kWrongUsage;
 std::string usage_error(const CLI::App& app, int argc, char** argv, const CLI::ParseError& error) {
   const std::string first = argc > 1 ? argv[1] : "";
   if (first.empty()) return "no command; see dupin --help";
-  const auto commands = app.get_subcommands([&](const CLI::App* command) { return command->get_name() == first; });
+  const auto commands =
+      app.get_subcommands([&](const CLI::App* command) { return command->get_name() == first; });
   if (first[0] != '-' && commands.empty())
     return "'" + first + "' is no command of this version (info, render and compare are); see dupin --help";
   const bool named = first[0] != '-';
@@ -29,8 +30,9 @@ int run(int argc, char** argv) {
   CLI::App app{"Draws CAD models from their exact surfaces, without tessellating them.", "dupin"};
   app.set_version_flag("--version", "dupin " DUPIN_VERSION);
   app.require_subcommand(1);
-  app.footer("Exit codes: 0 done, 2 wrong usage, 3 unreadable or unsupported input or unwritable output,\n"
-             "4 done but faces were left out (each is listed), 5 a limit was hit, 6 no GL device.");
+  app.footer(
+      "Exit codes: 0 done, 2 wrong usage, 3 unreadable or unsupported input or unwritable output,\n"
+      "4 done but faces were left out (each is listed), 5 a limit was hit, 6 no GL device.");
   dupin::app::Command chosen;
   dupin::app::add_info_command(app, chosen);
   dupin::app::add_render_command(app, chosen);
@@ -38,7 +40,8 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);  // --help, --version
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
+      return app.exit(error);  // --help, --version
     dupin::app::say(usage_error(app, argc, argv, error));
     return kWrongUsage;
   }

@@ -70,8 +70,10 @@ Status OutputFile::open(const std::string& path) {
   for (int i = 0; i < kMaxOutputs && slot_ < 0; ++i) {
     char* none = nullptr;
     char* name = strdup(working_.c_str());
-    if (unfinished[i].compare_exchange_strong(none, name)) slot_ = i;
-    else std::free(name);
+    if (unfinished[i].compare_exchange_strong(none, name))
+      slot_ = i;
+    else
+      std::free(name);
   }
   return {};
 }

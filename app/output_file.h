@@ -8,9 +8,9 @@
 
 namespace dupin::app {
 
-/// A file that is written under another name beside its own, and takes its name when it is complete. Until `commit` whatever
-/// stood there before stays; without it the destructor leaves nothing behind, and neither does a signal or a limit that ends the
-/// process (`remove_unfinished_outputs`).
+/// A file that is written under another name beside its own, and takes its name when it is complete. Until
+/// `commit` whatever stood there before stays; without it the destructor leaves nothing behind, and neither
+/// does a signal or a limit that ends the process (`remove_unfinished_outputs`).
 class OutputFile {
  public:
   OutputFile() = default;

@@ -104,9 +104,9 @@ Status RenderJob::prepare() {
 unsigned RenderJob::outputs() const {
   if (!options_.exr()) return kColor;
   static constexpr std::pair<const char*, Output> kNames[] = {
-      {"color", kColor},         {"normal", kNormal},       {"depth", kDepth},
-      {"position", kPosition},   {"curvature", kCurvature}, {"direction", kDirection},
-      {"face", kFace},           {"primitive", kPrimitive}, {"uv", kUv}};
+      {"color", kColor},       {"normal", kNormal},       {"depth", kDepth},
+      {"position", kPosition}, {"curvature", kCurvature}, {"direction", kDirection},
+      {"face", kFace},         {"primitive", kPrimitive}, {"uv", kUv}};
   if (options_.aovs.empty()) return kColor | kNormal | kDepth;
   unsigned outputs = 0;
   for (const auto& [name, output] : kNames)
@@ -150,7 +150,8 @@ Status RenderJob::draw() {
   const DrawOptions draw = draw_options();
   std::vector<double> frames;
   for (int i = 0; i < options_.repeat; ++i) {
-    if (!report(session_.progress(), "drawing", double(i) / options_.repeat)) return {StatusCode::cancelled, ""};
+    if (!report(session_.progress(), "drawing", double(i) / options_.repeat))
+      return {StatusCode::cancelled, ""};
     // Every frame but the last is for timing alone.
     if (i + 1 < options_.repeat) {
       const Result<FrameStats> timed = (*renderer)->draw_only(**scene, camera_, draw);
@@ -183,11 +184,13 @@ Status RenderJob::write() {
   if (options_.stats.empty()) return {};
   stats_.files = options_.files;
   stats_.primitive = options_.triangles() ? "triangles" : "quadric";
-  return statistics_.write(to_json(stats_).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  return statistics_.write(to_json(stats_).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+                           "\n");
 }
 
 void RenderJob::list_skipped_faces() {
-  for (const SkippedFace& face : stats_.faces.skipped) session_.warn("not drawn: " + face.name + ": " + face.reason);
+  for (const SkippedFace& face : stats_.faces.skipped)
+    session_.warn("not drawn: " + face.name + ": " + face.reason);
   if (const std::size_t n = stats_.faces.skipped.size(); n > 0)
     session_.warn(std::to_string(n) + " of " + std::to_string(stats_.faces.total()) + " faces were left out");
 }
@@ -197,16 +200,17 @@ int RenderJob::finish() {
     if (const Status status = output->commit(); !status.ok()) return session_.fail(status);
   session_.done();
   list_skipped_faces();
-  session_.note(std::to_string(stats_.primitives) + (options_.triangles() ? " triangles" : " quadric DPs") + " for " +
-                std::to_string(stats_.faces.drawn) + " faces, " + std::to_string(stats_.bytes / 1024) + " KiB, " +
-                std::to_string(stats_.covered_pixels) + " pixels, on " + stats_.gl_renderer);
+  session_.note(std::to_string(stats_.primitives) + (options_.triangles() ? " triangles" : " quadric DPs") +
+                " for " + std::to_string(stats_.faces.drawn) + " faces, " +
+                std::to_string(stats_.bytes / 1024) + " KiB, " + std::to_string(stats_.covered_pixels) +
+                " pixels, on " + stats_.gl_renderer);
   session_.note(describe(stats_.times));
   return stats_.faces.skipped.empty() ? kDone : kPartial;
 }
 
 int RenderJob::run() {
-  for (const auto stage : {&RenderJob::reserve_outputs, &RenderJob::load_model, &RenderJob::prepare, &RenderJob::draw,
-                           &RenderJob::write}) {
+  for (const auto stage : {&RenderJob::reserve_outputs, &RenderJob::load_model, &RenderJob::prepare,
+                           &RenderJob::draw, &RenderJob::write}) {
     if (const Status status = (this->*stage)(); !status.ok()) return session_.fail(status);
     if (session_.limits().time_is_over()) return session_.fail({StatusCode::cancelled, ""});
   }

@@ -16,7 +16,8 @@ std::string extension(const std::string& path) {
   return text;
 }
 
-/// The primitives that the command's contract names; those of later versions are known so that they can be refused by name.
+/// The primitives that the command's contract names; those of later versions are known so that they can be
+/// refused by name.
 std::string check_primitive(const std::string& name) {
   static const std::vector<std::string> now{"auto", "quadric", "triangles"};
   static const std::vector<std::string> later{"dp", "square", "rectangle", "ellipse", "pop", "qsplat", "amg"};
@@ -30,16 +31,21 @@ std::string check_color(const std::string& text) {
   return parse_color(text) ? std::string{} : "'" + text + "' is no colour: #rrggbb, R,G,B or a CSS name";
 }
 
-std::string check_background(const std::string& text) { return text == "none" ? std::string{} : check_color(text); }
+std::string check_background(const std::string& text) {
+  return text == "none" ? std::string{} : check_color(text);
+}
 
 void add_quality_options(CLI::App& command, RenderOptions& options) {
   const char* group = "What is drawn";
-  command.add_option("--primitive", options.primitive, "auto, quadric, or triangles: the tessellated reference")
+  command
+      .add_option("--primitive", options.primitive, "auto, quadric, or triangles: the tessellated reference")
       ->check(CLI::Validator(check_primitive, ""))
       ->type_name("NAME")
       ->capture_default_str()
       ->group(group);
-  command.add_option("--tolerance", options.tolerance_px, "Largest geometric error on the screen, in pixels (certified)")
+  command
+      .add_option("--tolerance", options.tolerance_px,
+                  "Largest geometric error on the screen, in pixels (certified)")
       ->check(CLI::Range(1e-4, 1e3))
       ->type_name("PX")
       ->capture_default_str()
@@ -66,7 +72,9 @@ void add_quality_options(CLI::App& command, RenderOptions& options) {
 
 void add_look_options(CLI::App& command, RenderOptions& options) {
   const char* group = "Looks";
-  command.add_flag("--edges,!--no-edges", options.edges, "Draw the edges in which faces meet at an angle (default)")
+  command
+      .add_flag("--edges,!--no-edges", options.edges,
+                "Draw the edges in which faces meet at an angle (default)")
       ->group(group);
   command.add_option("--background", options.background, "A colour, or none")
       ->check(CLI::Validator(check_background, ""))
@@ -85,7 +93,9 @@ void add_look_options(CLI::App& command, RenderOptions& options) {
 
 }  // namespace
 
-bool RenderOptions::exr() const { return extension(output) == ".exr"; }
+bool RenderOptions::exr() const {
+  return extension(output) == ".exr";
+}
 
 Status RenderOptions::check() const {
   const auto bad = [](std::string why) { return Status{StatusCode::invalid_argument, std::move(why)}; };
@@ -94,20 +104,28 @@ Status RenderOptions::check() const {
   return {};
 }
 
-std::optional<Color> RenderOptions::uniform_color() const { return color.empty() ? std::nullopt : parse_color(color); }
+std::optional<Color> RenderOptions::uniform_color() const {
+  return color.empty() ? std::nullopt : parse_color(color);
+}
 
-Color RenderOptions::background_color() const { return parse_color(background).value_or(Color{0, 0, 0, 0}); }
+Color RenderOptions::background_color() const {
+  return parse_color(background).value_or(Color{0, 0, 0, 0});
+}
 
 void add_render_options(CLI::App& command, RenderOptions& options) {
-  command.add_option("FILE", options.files, "STEP, IGES, BREP or FCStd; several become one picture")->required();
-  command.add_option("-o,--output", options.output, "The picture: .png or .exr")->required()->type_name("FILE");
+  command.add_option("FILE", options.files, "STEP, IGES, BREP or FCStd; several become one picture")
+      ->required();
+  command.add_option("-o,--output", options.output, "The picture: .png or .exr")
+      ->required()
+      ->type_name("FILE");
   command.add_option("--stats", options.stats, "Write what was done, as JSON")->type_name("FILE.json");
   add_view_options(command, options.view);
   add_quality_options(command, options);
   add_look_options(command, options);
   command
-      .add_option("--aov", options.aovs, "Channels of an EXR: color, normal, depth, position, curvature, direction, face, "
-                                         "primitive, uv (default: color,normal,depth)")
+      .add_option("--aov", options.aovs,
+                  "Channels of an EXR: color, normal, depth, position, curvature, direction, face, "
+                  "primitive, uv (default: color,normal,depth)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember(

@@ -10,7 +10,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A face of a part that is skipped is so in every instance; the instance's place in the assembly tells them apart.
+/// A face of a part that is skipped is so in every instance; the instance's place in the assembly tells them
+/// apart.
 std::string placed_name(const Instance& instance, const std::string& face) {
   return instance.name.empty() ? face : instance.name + ": " + face;
 }
@@ -38,18 +39,27 @@ std::string face_name(const Part& part, std::size_t face) {
 
 Json to_json(const FaceReport& faces) {
   Json skipped = Json::array();
-  for (const SkippedFace& face : faces.skipped) skipped.push_back({{"name", face.name}, {"reason", face.reason}});
+  for (const SkippedFace& face : faces.skipped)
+    skipped.push_back({{"name", face.name}, {"reason", face.reason}});
   return {{"total", faces.total()}, {"drawn", faces.drawn}, {"skipped", std::move(skipped)}};
 }
 
 Json to_json(const std::optional<CertifiedError>& error) {
   if (!error) return {{"bound", nullptr}, {"bound_px", nullptr}, {"normal_bound_degrees", nullptr}};
-  return {{"bound", error->bound}, {"bound_px", error->bound_px}, {"normal_bound_degrees", error->normal_bound_degrees}};
+  return {{"bound", error->bound},
+          {"bound_px", error->bound_px},
+          {"normal_bound_degrees", error->normal_bound_degrees}};
 }
 
 Json to_json(const StageTimes& t) {
-  return {{"import", t.import},           {"prepare", t.prepare},           {"context", t.context}, {"upload", t.upload},
-          {"first_frame", t.first_frame}, {"frame_median", t.frame_median}, {"write", t.write},     {"total", t.total}};
+  return {{"import", t.import},
+          {"prepare", t.prepare},
+          {"context", t.context},
+          {"upload", t.upload},
+          {"first_frame", t.first_frame},
+          {"frame_median", t.frame_median},
+          {"write", t.write},
+          {"total", t.total}};
 }
 
 }  // namespace
@@ -67,7 +77,8 @@ FaceReport report_faces_of_triangles(const Model& model) {
     std::vector<bool> meshed(part.faces.size(), false);
     for (std::uint32_t face : part.mesh.faces) meshed[face] = true;
     for (std::size_t face = 0; face < meshed.size(); ++face)
-      if (!meshed[face]) left_out[i].push_back({face_name(part, face), "the kernel's mesher made no triangles of it", 1});
+      if (!meshed[face])
+        left_out[i].push_back({face_name(part, face), "the kernel's mesher made no triangles of it", 1});
   }
   return report(model, left_out);
 }
@@ -76,12 +87,14 @@ nlohmann::ordered_json to_json(const RenderStats& stats) {
   Json json;
   json["file"] = stats.files.size() == 1 ? Json(stats.files.front()) : Json(stats.files);
   json["faces"] = to_json(stats.faces);
-  json["primitives"] = {{"kind", stats.primitive}, {"count", stats.primitives}, {"bytes", stats.bytes}, {"clips", stats.clips}};
+  json["primitives"] = {
+      {"kind", stats.primitive}, {"count", stats.primitives}, {"bytes", stats.bytes}, {"clips", stats.clips}};
   json["error"] = to_json(stats.error);
   json["time_s"] = to_json(stats.times);
   json["peak_rss_bytes"] = peak_resident_bytes();
   json["reader_peak_rss_bytes"] = peak_child_resident_bytes();
-  json["image"] = {{"width", stats.width}, {"height", stats.height}, {"covered_pixels", stats.covered_pixels}};
+  json["image"] = {
+      {"width", stats.width}, {"height", stats.height}, {"covered_pixels", stats.covered_pixels}};
   json["device"] = stats.device;
   json["gl_renderer"] = stats.gl_renderer;
   return json;
@@ -90,7 +103,8 @@ nlohmann::ordered_json to_json(const RenderStats& stats) {
 std::string describe(const StageTimes& t) {
   char text[256];
   std::snprintf(text, sizeof text,
-                "import %.3f s, prepare %.3f s, context %.3f s, upload %.3f s, first frame %.4f s, write %.3f s, total %.3f s",
+                "import %.3f s, prepare %.3f s, context %.3f s, upload %.3f s, first frame %.4f s, write "
+                "%.3f s, total %.3f s",
                 t.import, t.prepare, t.context, t.upload, t.first_frame, t.write, t.total);
   return text;
 }

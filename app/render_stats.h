@@ -15,7 +15,8 @@ namespace dupin::app {
 
 /// Seconds of each stage.
 struct StageTimes {
-  double import = 0, prepare = 0, context = 0, upload = 0, first_frame = 0, frame_median = 0, write = 0, total = 0;
+  double import = 0, prepare = 0, context = 0, upload = 0, first_frame = 0, frame_median = 0, write = 0,
+         total = 0;
 };
 
 /// Face instances of the files: drawn + skipped.size() = total.

@@ -10,27 +10,33 @@ namespace dupin::app {
 
 void add_common_options(CLI::App& command, CommonOptions& options) {
   const char* group = "Common options";
-  auto* quiet = command.add_flag("--quiet", options.quiet, "Say nothing but why the command failed")->group(group);
+  auto* quiet =
+      command.add_flag("--quiet", options.quiet, "Say nothing but why the command failed")->group(group);
   command.add_flag("--verbose", options.verbose, "Also say what was done, and how long each stage took")
       ->group(group)
       ->excludes(quiet);
-  command.add_option("--threads", options.threads, "Threads to use; the result does not depend on it (default: one per core)")
+  command
+      .add_option("--threads", options.threads,
+                  "Threads to use; the result does not depend on it (default: one per core)")
       ->check(CLI::Range(1, 1024))
       ->group(group);
   command.add_flag("--no-progress", options.no_progress, "No progress bar on the terminal")->group(group);
-  command.add_option("--time-limit", options.time_limit_seconds, "Give up after so many seconds (exit code 5)")
+  command
+      .add_option("--time-limit", options.time_limit_seconds, "Give up after so many seconds (exit code 5)")
       ->check(CLI::PositiveNumber)
       ->type_name("S")
       ->group(group);
   command
-      .add_option("--memory-limit", options.memory_limit_bytes,
-                  "Give up when the reader or the command takes more memory (exit code 5); K, M, G may follow")
+      .add_option(
+          "--memory-limit", options.memory_limit_bytes,
+          "Give up when the reader or the command takes more memory (exit code 5); K, M, G may follow")
       ->transform(CLI::AsSizeValue(false))
       ->check(CLI::PositiveNumber)
       ->type_name("BYTES")
       ->group(group);
-  command.add_flag("--strict", options.strict,
-                   "Exit code 4 for any face that cannot be drawn, from `info` too (`render` has it always)")
+  command
+      .add_flag("--strict", options.strict,
+                "Exit code 4 for any face that cannot be drawn, from `info` too (`render` has it always)")
       ->group(group);
   command.add_option("--units", options.units, "The unit of files that name none")
       ->check(CLI::IsMember({"um", "mm", "cm", "m", "inch", "ft"}))

@@ -18,10 +18,10 @@ namespace dupin::app {
 
 struct CommonOptions {
   bool quiet = false, verbose = false, no_progress = false, strict = false;
-  int threads = 0;                 ///< 0: one per core
-  double time_limit_seconds = 0;   ///< 0: none
+  int threads = 0;                ///< 0: one per core
+  double time_limit_seconds = 0;  ///< 0: none
   std::uint64_t memory_limit_bytes = 0;
-  std::string units = "mm";        ///< of files that have none
+  std::string units = "mm";  ///< of files that have none
 };
 
 void add_common_options(CLI::App& command, CommonOptions& options);

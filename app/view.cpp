@@ -36,7 +36,9 @@ const StandardView& find_view(const std::string& name) {
   return kViews.front();
 }
 
-Vec3 to_vec(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
+Vec3 to_vec(const std::vector<double>& v) {
+  return {v[0], v[1], v[2]};
+}
 
 std::vector<Vec3> instance_corners(const Model& model) {
   std::vector<Vec3> corners;
@@ -54,12 +56,14 @@ std::pair<double, double> usable_tangents(const Camera& camera) {
   return {vertical * camera.width / camera.height, vertical};
 }
 
-/// Where the eye has to be along an axis of the picture, and how far back at least, for every corner to be seen: a corner at
-/// (x, z) is where |x − eye| <= tan · (eye_z − z), which is x + tan·z <= eye + tan·eye_z and x − tan·z >= eye − tan·eye_z.
+/// Where the eye has to be along an axis of the picture, and how far back at least, for every corner to be
+/// seen: a corner at (x, z) is where |x − eye| <= tan · (eye_z − z), which is x + tan·z <= eye + tan·eye_z
+/// and x − tan·z >= eye − tan·eye_z.
 struct AxisFit {
   double eye, eye_z;
 };
-AxisFit fit_axis(const std::vector<Vec3>& corners, const Vec3& origin, const Vec3& axis, const Vec3& back, double tangent) {
+AxisFit fit_axis(const std::vector<Vec3>& corners, const Vec3& origin, const Vec3& axis, const Vec3& back,
+                 double tangent) {
   double hi = -std::numeric_limits<double>::infinity(), lo = -hi;
   for (const Vec3& corner : corners) {
     const Vec3 d = corner - origin;
@@ -69,8 +73,10 @@ AxisFit fit_axis(const std::vector<Vec3>& corners, const Vec3& origin, const Vec
   return {(hi + lo) / 2, (hi - lo) / 2 / tangent};
 }
 
-/// The nearest eye that sees every corner, looking along −back; with a fixed target, the nearest on the line through it.
-Vec3 fitted_eye(const Camera& camera, const CameraAxes& axes, const std::vector<Vec3>& corners, bool fixed_target) {
+/// The nearest eye that sees every corner, looking along −back; with a fixed target, the nearest on the line
+/// through it.
+Vec3 fitted_eye(const Camera& camera, const CameraAxes& axes, const std::vector<Vec3>& corners,
+                bool fixed_target) {
   const auto [tan_x, tan_y] = usable_tangents(camera);
   if (!fixed_target) {
     const AxisFit x = fit_axis(corners, camera.target, axes.right, axes.back, tan_x);
@@ -81,7 +87,8 @@ Vec3 fitted_eye(const Camera& camera, const CameraAxes& axes, const std::vector<
   for (const Vec3& corner : corners) {
     const Vec3 d = corner - camera.target;
     const double z = dot(d, axes.back);
-    distance = std::max({distance, z + std::abs(dot(d, axes.right)) / tan_x, z + std::abs(dot(d, axes.up)) / tan_y});
+    distance =
+        std::max({distance, z + std::abs(dot(d, axes.right)) / tan_x, z + std::abs(dot(d, axes.up)) / tan_y});
   }
   return camera.target + axes.back * distance;
 }
@@ -90,7 +97,8 @@ double fitted_height(const Camera& camera, const CameraAxes& axes, const std::ve
   double half = 0;
   for (const Vec3& corner : corners) {
     const Vec3 d = corner - camera.target;
-    half = std::max({half, std::abs(dot(d, axes.up)), std::abs(dot(d, axes.right)) * camera.height / camera.width});
+    half = std::max(
+        {half, std::abs(dot(d, axes.up)), std::abs(dot(d, axes.right)) * camera.height / camera.width});
   }
   return 2 * half / kFittedPart;
 }
@@ -125,7 +133,9 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
       ->capture_default_str()
       ->group(group);
   command.add_flag("--orthographic", options.orthographic, "Parallel projection")->group(group);
-  command.add_option("--height", options.height, "Parallel projection: model units from bottom to top (default: fitted)")
+  command
+      .add_option("--height", options.height,
+                  "Parallel projection: model units from bottom to top (default: fitted)")
       ->check(CLI::PositiveNumber)
       ->type_name("H")
       ->group(group);
@@ -153,7 +163,8 @@ Result<Camera> make_camera(const ViewOptions& options, const Model& model) {
   // An explicit eye turns away from the standard view, and Z is up unless said otherwise.
   camera.up = !options.up.empty() ? to_vec(options.up) : options.eye.empty() ? view.up : Vec3{0, 0, 1};
   camera.eye = options.eye.empty() ? camera.target + normalized(view.from) : to_vec(options.eye);
-  if (camera.eye == camera.target) return {StatusCode::invalid_argument, "--eye and --target are the same point"};
+  if (camera.eye == camera.target)
+    return {StatusCode::invalid_argument, "--eye and --target are the same point"};
 
   const CameraAxes axes = camera_axes(camera);
   // A model without extent in any direction is looked at from one unit away.
@@ -162,7 +173,8 @@ Result<Camera> make_camera(const ViewOptions& options, const Model& model) {
     camera.eye = camera.target + axes.back * extent;  // a parallel picture does not depend on the distance
   } else if (options.eye.empty() && box.diagonal() > 0) {
     camera.eye = fitted_eye(camera, axes, corners, !options.target.empty());
-    if (options.target.empty()) camera.target = camera.eye - axes.back * dot(camera.eye - camera.target, axes.back);
+    if (options.target.empty())
+      camera.target = camera.eye - axes.back * dot(camera.eye - camera.target, axes.back);
   } else if (options.eye.empty()) {
     camera.eye = camera.target + axes.back * extent;
   }

@@ -23,14 +23,16 @@ namespace dupin::bench {
 
 struct OcctShape::Data {
   TopoDS_Shape shape;
-  TopTools_IndexedMapOfShape faces;  // by TShape and location: placed copies are found by their first location
+  TopTools_IndexedMapOfShape
+      faces;  // by TShape and location: placed copies are found by their first location
 };
 
 namespace {
 
 bool ends_with(std::string name, const std::string& ending) {
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
-  return name.size() >= ending.size() && name.compare(name.size() - ending.size(), ending.size(), ending) == 0;
+  return name.size() >= ending.size() &&
+         name.compare(name.size() - ending.size(), ending.size(), ending) == 0;
 }
 
 template <class Reader>
@@ -67,7 +69,8 @@ struct Weighted {
 };
 
 /// The interpolated against the true normal at a triangle's middle and half way from it to the corners.
-void add_normal_errors(const BRepAdaptor_Surface& surface, const Poly_Triangulation& mesh, std::vector<Weighted>& errors) {
+void add_normal_errors(const BRepAdaptor_Surface& surface, const Poly_Triangulation& mesh,
+                       std::vector<Weighted>& errors) {
   static constexpr double kPoints[4][3] = {
       {1 / 3., 1 / 3., 1 / 3.}, {2 / 3., 1 / 6., 1 / 6.}, {1 / 6., 2 / 3., 1 / 6.}, {1 / 6., 1 / 6., 2 / 3.}};
   for (int i = 1; i <= mesh.NbTriangles(); ++i) {
@@ -85,14 +88,17 @@ void add_normal_errors(const BRepAdaptor_Surface& surface, const Poly_Triangulat
     const double area = side.Crossed(gp_Vec(mesh.Node(corner[0]), mesh.Node(corner[2]))).Magnitude() / 8;
     for (const auto& w : kPoints) {
       gp_Vec truth, interpolated = normals[0] * w[0] + normals[1] * w[1] + normals[2] * w[2];
-      if (interpolated.Magnitude() == 0 || !unit_normal(surface, uv[0] * w[0] + uv[1] * w[1] + uv[2] * w[2], truth)) continue;
+      if (interpolated.Magnitude() == 0 ||
+          !unit_normal(surface, uv[0] * w[0] + uv[1] * w[1] + uv[2] * w[2], truth))
+        continue;
       errors.push_back({truth.Angle(interpolated) * 180 / M_PI, area});
     }
   }
 }
 
 double weighted_percentile(std::vector<Weighted>& errors, double part) {
-  std::sort(errors.begin(), errors.end(), [](const Weighted& a, const Weighted& b) { return a.angle < b.angle; });
+  std::sort(errors.begin(), errors.end(),
+            [](const Weighted& a, const Weighted& b) { return a.angle < b.angle; });
   double total = 0, sum = 0;
   for (const Weighted& e : errors) total += e.area;
   for (const Weighted& e : errors)

@@ -22,8 +22,8 @@ class OcctShape {
   struct Triangles {
     std::size_t triangles = 0;
     std::size_t on_curved = 0;  ///< triangles of faces that are no plane, cylinder, cone or sphere
-    /// The angle between the interpolated vertex normals and the surface's own normal over those faces: what 99 % of their
-    /// area stays below, in degrees. 0 where there are none.
+    /// The angle between the interpolated vertex normals and the surface's own normal over those faces: what
+    /// 99 % of their area stays below, in degrees. 0 where there are none.
     double normal_p99_degrees = 0;
   };
   Triangles triangles() const;

@@ -1,9 +1,11 @@
 // Preparing to draw: Dupin's quadric DPs, certificates and trims included, beside Open CASCADE's triangles.
 //
-// Both sides get the same file in the same process, one run of each in turn, and as many threads as there are. The tolerance is
-// a fraction of the model's diagonal for both. Normals are to be no worse than the triangles' interpolated ones: the largest
-// certified angle that Dupin is allowed is what 99 % of the triangles' area stays below, on the faces that are no quadric
-// (--normals DEG sets another). Every file is measured in a process of its own, so that a crash of the kernel costs one row.
+// Both sides get the same file in the same process, one run of each in turn, and as many threads as there
+// are. The tolerance is a fraction of the model's diagonal for both. Normals are to be no worse than the
+// triangles' interpolated ones: the largest certified angle that Dupin is allowed is what 99 % of the
+// triangles' area stays below, on the faces that are no quadric
+// (--normals DEG sets another). Every file is measured in a process of its own, so that a crash of the kernel
+// costs one row.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -30,7 +32,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr double kPi = 3.14159265358979323846;
-// Normals of triangles that are all but exact (ruled faces), or all but arbitrary (collapsed ones), set no standard.
+// Normals of triangles that are all but exact (ruled faces), or all but arbitrary (collapsed ones), set no
+// standard.
 constexpr double kFinestNormalDegrees = 0.02, kCoarsestNormalDegrees = 5;
 
 struct Options {
@@ -77,12 +80,18 @@ Json measure_at(const Options& options, const Model& model, OcctShape& shape, do
     if (!scene.ok()) return {{"failed", scene.status().message}};
     theirs.push_back(shape.mesh(tolerance * diagonal, options.angle_radians));
   }
-  return {{"tolerance", tolerance}, {"normal_degrees", normal_degrees},
+  return {{"tolerance", tolerance},
+          {"normal_degrees", normal_degrees},
           {"triangle_normal_p99_degrees", triangles.normal_p99_degrees},
-          {"dupin_s", median(ours)}, {"mesh_s", median(theirs)}, {"faster", median(theirs) / median(ours)},
-          {"dps", scene->count()}, {"triangles", triangles.triangles},
-          {"dps_on_curved", count_on_curved(model, *scene)}, {"triangles_on_curved", triangles.on_curved},
-          {"bound", scene->bound / diagonal}, {"normal_bound_degrees", scene->normal_bound * 180 / kPi},
+          {"dupin_s", median(ours)},
+          {"mesh_s", median(theirs)},
+          {"faster", median(theirs) / median(ours)},
+          {"dps", scene->count()},
+          {"triangles", triangles.triangles},
+          {"dps_on_curved", count_on_curved(model, *scene)},
+          {"triangles_on_curved", triangles.on_curved},
+          {"bound", scene->bound / diagonal},
+          {"normal_bound_degrees", scene->normal_bound * 180 / kPi},
           {"skipped_faces", skipped_faces(*scene)}};
 }
 
@@ -117,7 +126,8 @@ std::vector<Json> measure_apart(const Options& options, const std::string& path)
   close(ends[1]);
   std::string text;
   char buffer[4096];
-  for (ssize_t n; (n = read(ends[0], buffer, sizeof buffer)) > 0;) text.append(buffer, static_cast<std::size_t>(n));
+  for (ssize_t n; (n = read(ends[0], buffer, sizeof buffer)) > 0;)
+    text.append(buffer, static_cast<std::size_t>(n));
   close(ends[0]);
   int status = 0;
   waitpid(child, &status, 0);
@@ -142,7 +152,8 @@ std::vector<std::string> files_of(const std::vector<std::string>& paths) {
     }
     for (const auto& entry : fs::recursive_directory_iterator(path)) {
       const std::string ending = entry.path().extension().string();
-      if (std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end()) files.push_back(entry.path().string());
+      if (std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end())
+        files.push_back(entry.path().string());
     }
   }
   std::sort(files.begin(), files.end());
@@ -175,9 +186,13 @@ int main(int argc, char** argv) {
   dupin::bench::Options options;
   CLI::App app{"Dupin's preparation beside Open CASCADE's tessellation, on the same files in one run."};
   app.add_option("PATH", options.paths, "Files, or folders of them (default: $DUPIN_DATA)");
-  app.add_option("--tolerance", options.tolerances, "Fractions of the diagonal")->delimiter(',')->capture_default_str();
-  app.add_option("--normals", options.normal_degrees, "Largest certified angle in degrees (default: the triangles' 99 %)");
-  app.add_option("--angle", options.angle_radians, "The mesh's angular deflection in radians")->capture_default_str();
+  app.add_option("--tolerance", options.tolerances, "Fractions of the diagonal")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--normals", options.normal_degrees,
+                 "Largest certified angle in degrees (default: the triangles' 99 %)");
+  app.add_option("--angle", options.angle_radians, "The mesh's angular deflection in radians")
+      ->capture_default_str();
   app.add_option("--runs", options.runs, "Runs of each, in turn; medians count")->capture_default_str();
   app.add_option("--threads", options.threads, "Dupin's threads (default: one per core, as the mesh has)");
   app.add_option("--seconds", options.seconds_a_file, "Longest time for one file")->capture_default_str();

@@ -29,9 +29,9 @@ std::string table_line(const nlohmann::json* row) {
   if (r.contains("failed")) return name + ": " + r.at("failed").get<std::string>();
   std::snprintf(text, sizeof text, "%-44s %7.2g %7.3f %9.2f %9.2f %6.1fx %9ld %9ld %8ld %9ld", name.c_str(),
                 r.at("tolerance").get<double>(), r.at("normal_degrees").get<double>(),
-                1e3 * r.at("dupin_s").get<double>(), 1e3 * r.at("mesh_s").get<double>(), r.at("faster").get<double>(),
-                r.at("dps").get<long>(), r.at("triangles").get<long>(), r.at("dps_on_curved").get<long>(),
-                r.at("triangles_on_curved").get<long>());
+                1e3 * r.at("dupin_s").get<double>(), 1e3 * r.at("mesh_s").get<double>(),
+                r.at("faster").get<double>(), r.at("dps").get<long>(), r.at("triangles").get<long>(),
+                r.at("dps_on_curved").get<long>(), r.at("triangles_on_curved").get<long>());
   return text;
 }
 
@@ -44,14 +44,17 @@ void print_summary(const std::vector<nlohmann::json>& rows) {
     std::size_t slower = 0;
     for (const nlohmann::json* row : group) {
       const auto number = [&](const char* key) { return row->at(key).get<double>(); };
-      if (number("dps_on_curved") > 0) fewer.push_back(number("triangles_on_curved") / number("dps_on_curved"));
+      if (number("dps_on_curved") > 0)
+        fewer.push_back(number("triangles_on_curved") / number("dps_on_curved"));
       if (number("mesh_s") < kShortestSeconds) continue;
       faster.push_back(number("faster"));
       slower += number("faster") < 1;
     }
-    std::printf("at %g of the diagonal, medians: %.1f times faster (%zu files whose mesh takes 5 ms or more; %zu slower),"
-                " %.1f times fewer primitives on faces that are no quadric\n",
-                tolerance, median(faster), faster.size(), slower, median(fewer));
+    std::printf(
+        "at %g of the diagonal, medians: %.1f times faster (%zu files whose mesh takes 5 ms or more; %zu "
+        "slower),"
+        " %.1f times fewer primitives on faces that are no quadric\n",
+        tolerance, median(faster), faster.size(), slower, median(fewer));
   }
 }
 

@@ -23,7 +23,8 @@ TEST(Colors, HexOfAParsedColorIsTheSameAgain) {
 }
 
 TEST(Colors, NonsenseIsRefused) {
-  for (const char* text : {"", "octarine", "#12", "#12345", "#ggg", "1,2,3", "0.1,0.2", "0,0,0,0", "nan,0,0", "#"})
+  for (const char* text :
+       {"", "octarine", "#12", "#12345", "#ggg", "1,2,3", "0.1,0.2", "0,0,0,0", "nan,0,0", "#"})
     EXPECT_FALSE(parse_color(text)) << text;
 }
 

@@ -13,7 +13,9 @@
 namespace dupin::test {
 namespace fs = std::filesystem;
 
-int Outcome::error_lines() const { return static_cast<int>(std::count(err.begin(), err.end(), '\n')); }
+int Outcome::error_lines() const {
+  return static_cast<int>(std::count(err.begin(), err.end(), '\n'));
+}
 
 std::string read_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -67,7 +69,9 @@ std::vector<std::string> Folder::names() const {
   return names;
 }
 
-std::string sample(const std::string& name) { return std::string(DUPIN_SAMPLES "/") + name; }
+std::string sample(const std::string& name) {
+  return std::string(DUPIN_SAMPLES "/") + name;
+}
 
 std::string data_file(const std::string& name) {
   const char* folder = std::getenv("DUPIN_DATA");

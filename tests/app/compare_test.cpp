@@ -89,7 +89,9 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
   ASSERT_TRUE(write_exr(folder.path("b.exr"), square(32, 0.5f, 10)).ok());
   const std::string text = folder.write("text.png", "no picture");
   const auto before = folder.names();
-  EXPECT_EQ(run_dupin({"compare", folder.path("a.exr"), folder.path("b.exr"), "--diff", folder.path("d.png")}).exit_code, 2);
+  EXPECT_EQ(run_dupin({"compare", folder.path("a.exr"), folder.path("b.exr"), "--diff", folder.path("d.png")})
+                .exit_code,
+            2);
   EXPECT_EQ(run_dupin({"compare", folder.path("a.exr"), text}).exit_code, 3);
   EXPECT_EQ(run_dupin({"compare", folder.path("a.exr"), folder.path("missing.exr")}).exit_code, 3);
   EXPECT_EQ(folder.names(), before);

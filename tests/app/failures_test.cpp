@@ -1,4 +1,5 @@
-// What the command does when it cannot do what it was asked: the documented exit code, one clear line, nothing written.
+// What the command does when it cannot do what it was asked: the documented exit code, one clear line,
+// nothing written.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -61,12 +62,13 @@ TEST_P(BadInput, IsRefusedAndNothingIsWritten) {
   const Folder input, output;
   const std::string file = make(input);
   expect_failure(run_dupin({"info", file}), 3);
-  expect_failure(run_dupin({"render", file, "-o", output.path("a.png"), "--stats", output.path("a.json")}), 3);
+  expect_failure(run_dupin({"render", file, "-o", output.path("a.png"), "--stats", output.path("a.json")}),
+                 3);
   EXPECT_THAT(output.names(), IsEmpty());
 }
 INSTANTIATE_TEST_SUITE_P(Failures, BadInput,
-                         testing::Values("empty", "noise", "truncated", "header_only", "text_as_brep", "dangling", "folder",
-                                         "missing"),
+                         testing::Values("empty", "noise", "truncated", "header_only", "text_as_brep",
+                                         "dangling", "folder", "missing"),
                          [](const auto& info) { return info.param; });
 
 TEST(Failures, ContentDecidesWhatAFileIsNotItsName) {
@@ -83,7 +85,9 @@ struct WrongUsage {
   const char* says;
 };
 // What CTest calls the case.
-void PrintTo(const WrongUsage& usage, std::ostream* out) { *out << usage.name; }
+void PrintTo(const WrongUsage& usage, std::ostream* out) {
+  *out << usage.name;
+}
 
 class Usage : public testing::TestWithParam<WrongUsage> {};
 
@@ -91,17 +95,19 @@ TEST_P(Usage, ExitCodeIsTwo) {
   const Folder folder;
   std::vector<std::string> arguments = GetParam().arguments;
   for (std::string& argument : arguments)
-    if (argument == "OUT") argument = folder.path("out.png");
-    else if (argument == "OUT.jpg") argument = folder.path("out.jpg");
-    else if (argument == "MODEL") argument = sample("bracket.step");
+    if (argument == "OUT")
+      argument = folder.path("out.png");
+    else if (argument == "OUT.jpg")
+      argument = folder.path("out.jpg");
+    else if (argument == "MODEL")
+      argument = sample("bracket.step");
   expect_failure(run_dupin(arguments), 2, GetParam().says);
   EXPECT_THAT(folder.names(), IsEmpty());
 }
 INSTANTIATE_TEST_SUITE_P(
     Failures, Usage,
     testing::Values(
-        WrongUsage{"nothing", {}, "--help"},
-        WrongUsage{"unknown_command", {"paint", "MODEL"}, "'paint'"},
+        WrongUsage{"nothing", {}, "--help"}, WrongUsage{"unknown_command", {"paint", "MODEL"}, "'paint'"},
         WrongUsage{"later_command", {"study", "MODEL"}, "'study'"},
         WrongUsage{"no_file", {"render", "-o", "OUT"}, "FILE"},
         WrongUsage{"no_output", {"render", "MODEL"}, "--output"},
@@ -111,8 +117,11 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"later_primitive", {"render", "MODEL", "-o", "OUT", "--primitive", "qsplat"}, "qsplat"},
         WrongUsage{"unknown_primitive", {"render", "MODEL", "-o", "OUT", "--primitive", "cubes"}, "cubes"},
         WrongUsage{"eye_of_two_numbers", {"render", "MODEL", "-o", "OUT", "--eye", "1,2"}, "--eye"},
-        WrongUsage{"eye_is_target", {"render", "MODEL", "-o", "OUT", "--eye", "1,2,3", "--target", "1,2,3"}, "--target"},
-        WrongUsage{"height_without_parallel", {"render", "MODEL", "-o", "OUT", "--height", "3"}, "--orthographic"},
+        WrongUsage{"eye_is_target",
+                   {"render", "MODEL", "-o", "OUT", "--eye", "1,2,3", "--target", "1,2,3"},
+                   "--target"},
+        WrongUsage{
+            "height_without_parallel", {"render", "MODEL", "-o", "OUT", "--height", "3"}, "--orthographic"},
         WrongUsage{"resolution", {"render", "MODEL", "-o", "OUT", "--resolution", "0,100"}, "--resolution"},
         WrongUsage{"tolerance", {"render", "MODEL", "-o", "OUT", "--tolerance", "-1"}, "--tolerance"},
         WrongUsage{"color", {"render", "MODEL", "-o", "OUT", "--color", "octarine"}, "octarine"},
@@ -125,10 +134,12 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Failures, UnwritableOutputIsSaidBeforeAnyWork) {
   const Folder folder;
-  expect_failure(run_dupin({"render", sample("bracket.step"), "-o", folder.path("missing/out.png")}), 3, "cannot write");
+  expect_failure(run_dupin({"render", sample("bracket.step"), "-o", folder.path("missing/out.png")}), 3,
+                 "cannot write");
   expect_failure(run_dupin({"render", sample("bracket.step"), "-o", "/proc/out.png"}), 3, "cannot write");
   mkdir(folder.path("folder.png").c_str(), 0700);
-  expect_failure(run_dupin({"render", sample("bracket.step"), "-o", folder.path("folder.png")}), 3, "cannot write");
+  expect_failure(run_dupin({"render", sample("bracket.step"), "-o", folder.path("folder.png")}), 3,
+                 "cannot write");
   // The picture could be written, its statistics cannot: neither is.
   expect_failure(run_dupin({"render", sample("bracket.step"), "-o", folder.path("a.png"), "--stats",
                             folder.path("missing/a.json")}),
@@ -208,10 +219,12 @@ TEST(Failures, DamagedFilesAreDrawnRefusedOrDrawnInPart) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     std::string bad = good;
-    for (unsigned i = 0; i < 3 * seed; ++i) bad[random() % bad.size()] = static_cast<char>('0' + random() % 10);
+    for (unsigned i = 0; i < 3 * seed; ++i)
+      bad[random() % bad.size()] = static_cast<char>('0' + random() % 10);
     const Folder input, output;
-    const Outcome outcome = run_dupin({"render", input.write("bad.step", bad), "-o", output.path("a.png"), "--resolution",
-                                       "64,64", "--time-limit", "20", "--memory-limit", "4G"});
+    const Outcome outcome =
+        run_dupin({"render", input.write("bad.step", bad), "-o", output.path("a.png"), "--resolution",
+                   "64,64", "--time-limit", "20", "--memory-limit", "4G"});
     EXPECT_THAT(outcome.exit_code, testing::AnyOf(0, 3, 4, 5)) << outcome.err;
     EXPECT_EQ(output.names().size(), outcome.exit_code == 0 || outcome.exit_code == 4 ? 1u : 0u);
     EXPECT_LT(outcome.seconds, 22);
@@ -220,7 +233,8 @@ TEST(Failures, DamagedFilesAreDrawnRefusedOrDrawnInPart) {
 
 TEST(Failures, QuietSaysNothingWhenAllIsWell) {
   const Folder folder;
-  const Outcome outcome = run_dupin({"render", sample("bracket.step"), "-o", folder.path("a.png"), "--quiet"});
+  const Outcome outcome =
+      run_dupin({"render", sample("bracket.step"), "-o", folder.path("a.png"), "--quiet"});
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_EQ(outcome.err, "");
   EXPECT_EQ(outcome.out, "");

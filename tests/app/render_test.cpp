@@ -17,7 +17,8 @@ using testing::HasSubstr;
 json render(const Folder& folder, const std::string& output, std::vector<std::string> options = {},
             const std::string& file = sample("bracket.step")) {
   const std::string stats = folder.path(output + ".json");
-  std::vector<std::string> arguments{"render", file, "-o", folder.path(output), "--stats", stats, "--resolution", "160,120"};
+  std::vector<std::string> arguments{"render",  file,  "-o",           folder.path(output),
+                                     "--stats", stats, "--resolution", "160,120"};
   arguments.insert(arguments.end(), options.begin(), options.end());
   const Outcome outcome = run_dupin(arguments);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -30,7 +31,8 @@ TEST(Render, StatisticsSayWhatWasDone) {
   ASSERT_TRUE(stats.is_object());
   EXPECT_EQ(stats["file"], sample("bracket.step"));
   EXPECT_GT(stats["faces"]["total"], 10);
-  EXPECT_EQ(stats["faces"]["drawn"].get<int>() + static_cast<int>(stats["faces"]["skipped"].size()), stats["faces"]["total"]);
+  EXPECT_EQ(stats["faces"]["drawn"].get<int>() + static_cast<int>(stats["faces"]["skipped"].size()),
+            stats["faces"]["total"]);
   EXPECT_EQ(stats["primitives"]["kind"], "quadric");
   EXPECT_GE(stats["primitives"]["count"], stats["faces"]["drawn"]);
   EXPECT_GT(stats["primitives"]["bytes"], 0);
@@ -91,7 +93,8 @@ TEST_P(SameBytes, TwiceAndAtOneAndTwoThreads) {
   const std::string ending = GetParam();
   const auto draw = [&](const std::string& name, std::vector<std::string> options) {
     if (ending == "exr")
-      options.insert(options.end(), {"--aov", "color,normal,depth,position,curvature,direction,face,primitive,uv"});
+      options.insert(options.end(),
+                     {"--aov", "color,normal,depth,position,curvature,direction,face,primitive,uv"});
     render(folder, name + "." + ending, options);
     return read_file(folder.path(name + "." + ending));
   };
@@ -108,8 +111,8 @@ TEST(Render, SeveralFilesBecomeOnePicture) {
   const Folder folder;
   const json one = render(folder, "a.png");
   const std::string stats = folder.path("both.json");
-  const Outcome outcome = run_dupin({"render", sample("bracket.step"), sample("freeform.step"), "-o", folder.path("b.png"),
-                                     "--stats", stats, "--resolution", "160,120"});
+  const Outcome outcome = run_dupin({"render", sample("bracket.step"), sample("freeform.step"), "-o",
+                                     folder.path("b.png"), "--stats", stats, "--resolution", "160,120"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const json both = json::parse(read_file(stats));
   EXPECT_EQ(both["file"].size(), 2u);
@@ -125,20 +128,26 @@ TEST_P(Changes, ThePicture) {
   render(folder, "b.png", GetParam());
   EXPECT_FALSE(read_file(folder.path("a.png")) == read_file(folder.path("b.png")));
 }
-INSTANTIATE_TEST_SUITE_P(
-    Render, Changes,
-    testing::Values(std::vector<std::string>{"--view", "top"}, std::vector<std::string>{"--no-edges"},
-                    std::vector<std::string>{"--background", "black"}, std::vector<std::string>{"--background", "none"},
-                    std::vector<std::string>{"--color", "red"}, std::vector<std::string>{"--orthographic"},
-                    std::vector<std::string>{"--samples", "1"}, std::vector<std::string>{"--fov", "60", "--eye=200,-200,200"},
-                    std::vector<std::string>{"--shading", "normal"}, std::vector<std::string>{"--shading", "zebra"},
-                    std::vector<std::string>{"--shading", "mean"}, std::vector<std::string>{"--shading", "face"},
-                    std::vector<std::string>{"--shading", "primitive"}));
+INSTANTIATE_TEST_SUITE_P(Render, Changes,
+                         testing::Values(std::vector<std::string>{"--view", "top"},
+                                         std::vector<std::string>{"--no-edges"},
+                                         std::vector<std::string>{"--background", "black"},
+                                         std::vector<std::string>{"--background", "none"},
+                                         std::vector<std::string>{"--color", "red"},
+                                         std::vector<std::string>{"--orthographic"},
+                                         std::vector<std::string>{"--samples", "1"},
+                                         std::vector<std::string>{"--fov", "60", "--eye=200,-200,200"},
+                                         std::vector<std::string>{"--shading", "normal"},
+                                         std::vector<std::string>{"--shading", "zebra"},
+                                         std::vector<std::string>{"--shading", "mean"},
+                                         std::vector<std::string>{"--shading", "face"},
+                                         std::vector<std::string>{"--shading", "primitive"}));
 
 TEST(Render, BothDevicesDraw) {
   const Folder folder;
   EXPECT_THAT(render(folder, "a.png", {"--device", "egl"})["device"].get<std::string>(), HasSubstr("EGL"));
-  EXPECT_THAT(render(folder, "b.png", {"--device", "osmesa"})["device"].get<std::string>(), HasSubstr("OSMesa"));
+  EXPECT_THAT(render(folder, "b.png", {"--device", "osmesa"})["device"].get<std::string>(),
+              HasSubstr("OSMesa"));
 }
 
 // A thousand times closer: the bound in pixels still holds, and the picture is full of the surface looked at.
@@ -179,7 +188,8 @@ TEST(Info, SaysWhatTheSampleHolds) {
   for (const auto& [kind, count] : info["faces"]["by_surface"].items()) faces += count.get<int>();
   EXPECT_EQ(faces, info["faces"]["readable"]);
   for (int axis = 0; axis < 3; ++axis)
-    EXPECT_LT(info["bounding_box"]["min"][axis].get<double>(), info["bounding_box"]["max"][axis].get<double>());
+    EXPECT_LT(info["bounding_box"]["min"][axis].get<double>(),
+              info["bounding_box"]["max"][axis].get<double>());
   const Outcome table = run_dupin({"info", sample("bracket.step")});
   EXPECT_EQ(table.exit_code, 0);
   EXPECT_THAT(table.out, HasSubstr("STEP"));

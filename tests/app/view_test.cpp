@@ -52,10 +52,12 @@ TEST_P(StandardViews, ShowTheWholeModelAsLargeAsTheyMay) {
           ASSERT_TRUE(camera.ok());
           const Vec2 extent = extent_in_picture(*camera, bounding_box(model));
           // A box 10,000 km from zero has coordinates that are rounded to nanometres.
-          EXPECT_NEAR(std::max(extent.x, extent.y), kFittedPart, 1e-4) << size.x << " " << at.x << " " << orthographic;
+          EXPECT_NEAR(std::max(extent.x, extent.y), kFittedPart, 1e-4)
+              << size.x << " " << at.x << " " << orthographic;
         }
 }
-INSTANTIATE_TEST_SUITE_P(View, StandardViews, testing::Values("iso", "front", "back", "left", "right", "top", "bottom"));
+INSTANTIATE_TEST_SUITE_P(View, StandardViews,
+                         testing::Values("iso", "front", "back", "left", "right", "top", "bottom"));
 
 TEST(View, FrontIsSeenAlongYWithZUp) {
   ViewOptions options;
