@@ -122,6 +122,9 @@ class PartSampler {
       // A seam or a pole is inside, not on the outline that the loops make of it.
       const Box2& box = boundary.uv_box;
       const Vec2 margin = box.size() * 1e-6, uv = found ? *found : near;
+      // The quadric goes on where the spline ends.
+      const double off = distance(point_at(spline, uv.x, uv.y), p);
+      if (off > 1e-6 * part_.box.diagonal() + 10 * recognized.deviation) return false;
       return uv_inside(boundary, {std::clamp(uv.x, box.lo.x + margin.x, box.hi.x - margin.x), std::clamp(uv.y, box.lo.y + margin.y, box.hi.y - margin.y)});
     };
     const QuadricFaceInput in{part_, face, index, recognized.surface, boundary, recast.box(), {}, inside, !face.reversed};
