@@ -64,6 +64,8 @@ class Recast {
       for (int j = 0; j <= kSteps; ++j) {
         const Vec2 uv{uv_box.lo.x + uv_box.size().x * i / kSteps, uv_box.lo.y + uv_box.size().y * j / kSteps};
         const Vec3 p = point_at(spline, uv.x, uv.y);
+        if (j > 0) spacing_ = std::max(spacing_, distance(p, points_.back().first));
+        if (i > 0) spacing_ = std::max(spacing_, distance(p, points_[points_.size() - kSteps - 1].first));
         points_.push_back({p, uv});
         // The region's middle lies at u = π, opposite the seam.
         if (const auto q = invert(recognized, p, {kTwoPi / 2, 0})) box_.add(*q);
@@ -78,6 +80,8 @@ class Recast {
       box_.lo.y = std::max(box_.lo.y, -kTwoPi / 4), box_.hi.y = std::min(box_.hi.y, kTwoPi / 4);
   }
   const Box2& box() const { return box_; }
+  /// The largest distance between neighbouring points of the grid.
+  double spacing() const { return spacing_; }
   Vec2 nearest_parameters(const Vec3& p) const {
     double least = 1e300;
     Vec2 best{};
@@ -89,6 +93,7 @@ class Recast {
  private:
   std::vector<std::pair<Vec3, Vec2>> points_;
   Box2 box_;
+  double spacing_ = 0;
 };
 
 class PartSampler {
@@ -123,8 +128,9 @@ class PartSampler {
       const Box2& box = boundary.uv_box;
       const Vec2 margin = box.size() * 1e-6, uv = found ? *found : near;
       // The quadric goes on where the spline ends.
+      // Newton's method may stall at a pole: then the nearest point known has to do.
       const double off = distance(point_at(spline, uv.x, uv.y), p);
-      if (off > 1e-6 * part_.box.diagonal() + 10 * recognized.deviation) return false;
+      if (off > std::max(found ? 0 : recast.spacing(), 1e-6 * part_.box.diagonal() + 10 * recognized.deviation)) return false;
       return uv_inside(boundary, {std::clamp(uv.x, box.lo.x + margin.x, box.hi.x - margin.x), std::clamp(uv.y, box.lo.y + margin.y, box.hi.y - margin.y)});
     };
     const QuadricFaceInput in{part_, face, index, recognized.surface, boundary, recast.box(), {}, inside, !face.reversed};
