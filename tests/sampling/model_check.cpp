@@ -168,7 +168,9 @@ void check_bounds(const Part& part, const PartDps& dps, const Outline& outline, 
             if (d < least) least = d, best = q;
           }
         uv = best;
-        if (!nearest(surface, p, uv, grown(dp.cell, 1.0))) {
+        // Closed forms where there are some: descent may run over a sphere's pole, into parameters that name the same points.
+        if (is_quadric(surface)) uv = *invert(surface, p, dp.cell.center());
+        else if (!nearest(surface, p, uv, grown(dp.cell, 1.0))) {
           ++report.unresolved;
           continue;
         }
