@@ -119,9 +119,11 @@ class Widening {
   const Edge& edge_;
 };
 
-void append_trim(const Part& part, const Surface& surface, const Trim& trim, const std::vector<ArcChain>& chains, bool with_uv,
+void append_trim(const Part& part, const Face& face, const Trim& trim, const std::vector<ArcChain>& chains, bool with_uv,
                  FaceLoop& loop, std::vector<Vec2>& polygon, std::vector<std::array<Vec3, 3>>& outward) {
   const Edge& edge = part.edges[trim.edge];
+  const Surface& surface = part.surfaces[face.surface];
+  const bool seam = is_inner_seam(face, trim);
   const auto& arcs = chains[trim.edge].arcs;
   if (arcs.empty() || trim.degenerate) {
     Box2 box;
@@ -130,9 +132,9 @@ void append_trim(const Part& part, const Surface& surface, const Trim& trim, con
   }
   for (std::size_t k = 0; k < arcs.size(); ++k) {
     const ConicArc3& arc = arcs[trim.reversed ? arcs.size() - 1 - k : k];
-    FaceArc face_arc{trim.reversed ? reversed(arc) : arc, !edge.smooth && !trim.seam, {}};
+    FaceArc face_arc{trim.reversed ? reversed(arc) : arc, !edge.smooth, {}};
     if (with_uv) flatten(trim, arc.t0, arc.t1, trim.reversed, polygon, face_arc.uv);
-    if (trim.seam) continue;
+    if (seam) continue;
     loop.arcs.push_back(face_arc);
     const ConicArc3& a = face_arc.arc;
     const Vec3 middle = a.line ? (a.p0 + a.p2) * 0.5 : a.p1;
@@ -203,10 +205,10 @@ FaceBoundary face_boundary(const Part& part, const Face& face, const std::vector
     std::vector<std::array<Vec3, 3>> outward;
     bool broken_by_seam = false;
     for (const Trim& trim : trims) {
-      append_trim(part, part.surfaces[face.surface], trim, chains, with_uv, loop, polygon, outward);
-      broken_by_seam |= trim.seam || trim.degenerate;
+      append_trim(part, face, trim, chains, with_uv, loop, polygon, outward);
+      broken_by_seam |= is_inner_seam(face, trim) || trim.degenerate;
     }
-    const bool single = trims.size() == 1 && !trims[0].degenerate && !trims[0].seam;
+    const bool single = trims.size() == 1 && !trims[0].degenerate;
     if (single) loop.whole_ellipse = whole_ellipse(part.edges[trims[0].edge], loop.ellipse);
     if (!broken_by_seam) {
       reach_over_gaps(loop, outward);
@@ -220,6 +222,14 @@ FaceBoundary face_boundary(const Part& part, const Face& face, const std::vector
   }
   if (boundary.uv_box.empty()) boundary.uv_box = face.uv_box;
   return boundary;
+}
+
+bool is_inner_seam(const Face& face, const Trim& trim) {
+  if (!trim.seam) return false;
+  int uses = 0;
+  for (const Loop& loop : face.loops)
+    for (const Trim& other : loop) uses += other.edge == trim.edge;
+  return uses > 1;
 }
 
 bool uv_inside(const FaceBoundary& boundary, Vec2 uv) {
@@ -254,7 +264,7 @@ UvRectangle uv_rectangle(const Part& part, const Face& face, const FaceBoundary&
       }
       const int side = on[0] ? 0 : on[1] ? 1 : on[2] ? 2 : on[3] ? 3 : -1;
       if (side < 0) return result;
-      if (trim.seam || trim.degenerate) continue;
+      if (is_inner_seam(face, trim) || trim.degenerate) continue;
       result.side_edge[side] = true;
       result.side_drawn[side] |= !edge.smooth;
     }

@@ -37,6 +37,10 @@ struct FaceBoundary {
 /// `with_uv`: flatten the pcurves too (uv_loops, FaceArc::uv).
 FaceBoundary face_boundary(const Part& part, const Face& face, const std::vector<ArcChain>& chains, bool with_uv);
 
+/// A trim whose edge bounds the face twice: the surface goes on across it. (A closed surface's seam may also bound a face on one side
+/// only: then it is an edge like any other.)
+bool is_inner_seam(const Face& face, const Trim& trim);
+
 /// Even–odd test of a parameter point against the flattened loops; with no loops, against the box.
 bool uv_inside(const FaceBoundary& boundary, Vec2 uv);
 

@@ -40,7 +40,7 @@ class PatchFace {
       : in_(in), out_(out), surface_(in.part.surfaces[in.face.surface]), period_u_(period_u(surface_)), period_v_(period_v(surface_)) {
     for (const Loop& loop : in.face.loops)
       for (const Trim& trim : loop)
-        if (trim.seam) note_seam(trim);
+        if (is_inner_seam(in.face, trim)) note_seam(trim);
   }
 
   void divide_patch(const FittedPatch& fitted) {

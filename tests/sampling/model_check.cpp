@@ -16,6 +16,13 @@ struct Outline {
   std::vector<Vec3> points;  ///< consecutive pairs are segments
 };
 
+bool is_seam(const Face& face, const Trim& trim) {
+  int uses = 0;
+  for (const Loop& loop : face.loops)
+    for (const Trim& other : loop) uses += other.edge == trim.edge;
+  return trim.seam && uses > 1;
+}
+
 Outline outline_of(const Part& part, const Face& face) {
   constexpr int kSides = 256;
   Outline outline;
@@ -28,7 +35,7 @@ Outline outline_of(const Part& part, const Face& face) {
         const double a = trim.reversed ? edge.t1 + (edge.t0 - edge.t1) * f0 : edge.t0 + (edge.t1 - edge.t0) * f0;
         const double b = trim.reversed ? edge.t1 + (edge.t0 - edge.t1) * f1 : edge.t0 + (edge.t1 - edge.t0) * f1;
         polygon.push_back(point_at(trim.pcurve, a));
-        if (!edge.curve || trim.seam) continue;
+        if (!edge.curve || is_seam(face, trim)) continue;
         outline.points.push_back(point_at(*edge.curve, a));
         outline.points.push_back(point_at(*edge.curve, b));
       }
