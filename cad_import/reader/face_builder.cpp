@@ -90,6 +90,7 @@ class FaceBuilder {
     use.file_start = point_at(known, use.trim.reversed ? edge.t1 : edge.t0);
     use.file_end = point_at(known, use.trim.reversed ? edge.t0 : edge.t1);
     result_.deviations.emplace_back(use.trim.edge, deviation);
+    if (!(deviation <= kWrong * size_)) result_.has_stray_edge = true;
     return use;
   }
 
@@ -110,7 +111,7 @@ class FaceBuilder {
     stops.insert(stops.end(), more.begin(), more.end());
     stops.push_back(edge.t0), stops.push_back(edge.t1);
     std::sort(stops.begin(), stops.end());
-    const int pieces = stops.size() > 8 ? 4 : 12;
+    const int pieces = stops.size() > 8 ? 6 : 24;
     double worst = 0;
     for (std::size_t i = 0; i + 1 < stops.size(); ++i)
       for (int k = 0; k < pieces + (i + 2 == stops.size() ? 1 : 0); ++k) {
@@ -124,7 +125,8 @@ class FaceBuilder {
 
   // Replaces a missing or worse pcurve by the projection of the edge's curve.
   void refit(const Edge& edge, bool seam, std::optional<Curve2>& pcurve, double& deviation) {
-    if (seam && pcurve) return;  // which side a projection would fall on is anyone's guess
+    // On which side of the seam a projection falls is anyone's guess, so it must be needed badly.
+    if (seam && pcurve && deviation <= kWrong * size_) return;
     std::optional<Curve2> fitted;
     if (const auto* plane = std::get_if<Plane>(&surface_.geometry))
       fitted = in_plane(*edge.curve, plane->frame);
@@ -136,7 +138,7 @@ class FaceBuilder {
     if (pcurve) {
       const double middle = (edge.t0 + edge.t1) / 2;
       translate(*fitted, whole_periods(surface_, point_at(*pcurve, middle) - point_at(*fitted, middle)));
-      if (passes_elsewhere(*fitted, *pcurve, edge)) return;
+      if (deviation <= kWrong * size_ && passes_elsewhere(*fitted, *pcurve, edge)) return;
     }
     const double reached = deviation_of(*fitted, edge);
     if (pcurve && !(reached < 0.5 * deviation)) return;

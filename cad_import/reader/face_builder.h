@@ -19,6 +19,7 @@ struct FaceResult {
   std::optional<std::string> skip;    ///< why the face cannot be had
   std::optional<std::string> repair;  ///< why its wires need to be repaired first
   double largest_gap = 0;
+  bool has_stray_edge = false;  ///< an edge lies far from its curve on the face
   std::vector<std::pair<std::uint32_t, double>>
       deviations;    ///< per edge, how far its pcurve lies from its curve
   int refitted = 0;  ///< pcurves that were made from the edge's curve

@@ -167,7 +167,7 @@ class PartBuilder {
       build_faces(first);
       const bool good = pending_.size() > first &&
                         std::all_of(pending_.begin() + static_cast<std::ptrdiff_t>(first), pending_.end(),
-                                    [](const Pending& p) { return !p.result.skip && !p.result.repair; });
+                                    [](const Pending& p) { return is_good(p.result); });
       if (good)
         ++mended, pending_[i].replaced = true;
       else
@@ -178,6 +178,10 @@ class PartBuilder {
            "faces' boundaries did not close and were mended");
     std::stable_sort(pending_.begin(), pending_.end(),
                      [](const Pending& a, const Pending& b) { return a.source < b.source; });
+  }
+
+  static bool is_good(const FaceResult& result) {
+    return !result.skip && !result.repair && !result.has_stray_edge;
   }
 
   void take_faces() {
