@@ -1,6 +1,7 @@
 // dupin-reader: the process in which CAD files are read. Not for calling by hand: it answers in frames
 // (reader_protocol.h) through descriptor 3.
 #include <fcntl.h>
+#include <malloc.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -18,6 +19,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#include <thread>
 
 #include "../../core/parallel.h"
 #include "../model_stream.h"
@@ -82,6 +84,15 @@ void apply_limits(const Arguments& a) {
   }
 }
 
+void use_threads(int threads) {
+  set_thread_limit(threads);
+  ::mallopt(M_ARENA_MAX, 4);  // a heap a thread would eat up the address space that the memory limit counts
+  if (threads > 0 && static_cast<unsigned>(threads) < std::thread::hardware_concurrency()) {
+    OSD_Parallel::SetUseOcctThreads(true);  // these can be told how many to be
+    OSD_ThreadPool::DefaultPool()->SetNbDefaultThreadsToLaunch(threads);
+  }
+}
+
 int fail(const Status& status) {
   send_failure(kReaderPipe, status);
   return 1;
@@ -126,7 +137,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   apply_limits(arguments);
-  dupin::set_thread_limit(arguments.threads);
+  use_threads(arguments.threads);
   Message::DefaultMessenger()->ChangePrinters().Clear();
   // The answer is complete once it is written: the kernel takes the memory back faster than destructors
   // would.
