@@ -97,7 +97,7 @@ Status RenderJob::prepare() {
   dps_ = std::move(*dps);
   stats_.times.prepare = watch.lap();
   stats_.faces = report_faces(model_, dps_);
-  stats_.error = CertifiedError{dps_.bound, dps_.bound_px, dps_.normal_bound / kRadians};
+  stats_.error = certified_error(dps_);
   return {};
 }
 

@@ -48,7 +48,9 @@ Json to_json(const std::optional<CertifiedError>& error) {
   if (!error) return {{"bound", nullptr}, {"bound_px", nullptr}, {"normal_bound_degrees", nullptr}};
   return {{"bound", error->bound},
           {"bound_px", error->bound_px},
-          {"normal_bound_degrees", error->normal_bound_degrees}};
+          {"normal_bound_degrees", error->normal_bound_degrees},
+          {"estimated_primitives", error->estimated},
+          {"specks", error->specks}};
 }
 
 Json to_json(const StageTimes& t) {
@@ -63,6 +65,18 @@ Json to_json(const StageTimes& t) {
 }
 
 }  // namespace
+
+CertifiedError certified_error(const DpScene& scene) {
+  constexpr double kDegrees = 180 / 3.14159265358979323846;
+  CertifiedError error{scene.bound, scene.bound_px, scene.normal_bound * kDegrees};
+  for (const PartDps& part : scene.parts) {
+    for (const QuadricDp& dp : part.dps) {
+      error.estimated += dp.sampled_bound;
+      error.specks += dp.speck;
+    }
+  }
+  return error;
+}
 
 FaceReport report_faces(const Model& model, const DpScene& scene) {
   std::vector<std::vector<SkippedFace>> left_out(model.parts.size());

@@ -32,7 +32,11 @@ FaceReport report_faces_of_triangles(const Model& model);
 
 struct CertifiedError {
   double bound = 0, bound_px = 0, normal_bound_degrees = 0;
+  std::size_t estimated = 0;  ///< primitives of offset surfaces, whose bound is partly sampled
+  std::size_t specks =
+      0;  ///< primitives at singular points, smaller than the tolerance: no bound of their normal
 };
+CertifiedError certified_error(const DpScene& scene);
 
 struct RenderStats {
   std::vector<std::string> files;

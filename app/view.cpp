@@ -1,106 +1,16 @@
 #include "view.h"
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <cmath>
-#include <limits>
-#include <utility>
+#include <iterator>
+
+#include "../render/view.h"
 
 namespace dupin::app {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
-struct StandardView {
-  const char* name;
-  Vec3 from, up;  ///< the direction from the model to the eye
-};
-// Z is up; the front is seen along +Y, as CAD systems have it.
-constexpr std::array<StandardView, 7> kViews{{{"iso", {1, -1, 1}, {0, 0, 1}},
-                                              {"front", {0, -1, 0}, {0, 0, 1}},
-                                              {"back", {0, 1, 0}, {0, 0, 1}},
-                                              {"left", {-1, 0, 0}, {0, 0, 1}},
-                                              {"right", {1, 0, 0}, {0, 0, 1}},
-                                              {"top", {0, 0, 1}, {0, 1, 0}},
-                                              {"bottom", {0, 0, -1}, {0, -1, 0}}}};
-
-std::vector<std::string> view_names() {
-  std::vector<std::string> names;
-  for (const StandardView& view : kViews) names.emplace_back(view.name);
-  return names;
-}
-
-const StandardView& find_view(const std::string& name) {
-  for (const StandardView& view : kViews)
-    if (name == view.name) return view;
-  return kViews.front();
-}
-
 Vec3 to_vec(const std::vector<double>& v) {
   return {v[0], v[1], v[2]};
-}
-
-std::vector<Vec3> instance_corners(const Model& model) {
-  std::vector<Vec3> corners;
-  for (const Instance& instance : model.instances) {
-    const Box3& box = model.parts[instance.part].box;
-    if (box.empty()) continue;
-    for (int i = 0; i < 8; ++i) corners.push_back(transform_point(instance.to_world, box.corner(i)));
-  }
-  return corners;
-}
-
-/// The tangents of half the angles of view that the model may fill, horizontally and vertically.
-std::pair<double, double> usable_tangents(const Camera& camera) {
-  const double vertical = std::tan(camera.fov_degrees * kPi / 360) * kFittedPart;
-  return {vertical * camera.width / camera.height, vertical};
-}
-
-/// Where the eye has to be along an axis of the picture, and how far back at least, for every corner to be
-/// seen: a corner at (x, z) is where |x − eye| <= tan · (eye_z − z), which is x + tan·z <= eye + tan·eye_z
-/// and x − tan·z >= eye − tan·eye_z.
-struct AxisFit {
-  double eye, eye_z;
-};
-AxisFit fit_axis(const std::vector<Vec3>& corners, const Vec3& origin, const Vec3& axis, const Vec3& back,
-                 double tangent) {
-  double hi = -std::numeric_limits<double>::infinity(), lo = -hi;
-  for (const Vec3& corner : corners) {
-    const Vec3 d = corner - origin;
-    hi = std::max(hi, dot(d, axis) + tangent * dot(d, back));
-    lo = std::min(lo, dot(d, axis) - tangent * dot(d, back));
-  }
-  return {(hi + lo) / 2, (hi - lo) / 2 / tangent};
-}
-
-/// The nearest eye that sees every corner, looking along −back; with a fixed target, the nearest on the line
-/// through it.
-Vec3 fitted_eye(const Camera& camera, const CameraAxes& axes, const std::vector<Vec3>& corners,
-                bool fixed_target) {
-  const auto [tan_x, tan_y] = usable_tangents(camera);
-  if (!fixed_target) {
-    const AxisFit x = fit_axis(corners, camera.target, axes.right, axes.back, tan_x);
-    const AxisFit y = fit_axis(corners, camera.target, axes.up, axes.back, tan_y);
-    return camera.target + axes.right * x.eye + axes.up * y.eye + axes.back * std::max(x.eye_z, y.eye_z);
-  }
-  double distance = 0;
-  for (const Vec3& corner : corners) {
-    const Vec3 d = corner - camera.target;
-    const double z = dot(d, axes.back);
-    distance =
-        std::max({distance, z + std::abs(dot(d, axes.right)) / tan_x, z + std::abs(dot(d, axes.up)) / tan_y});
-  }
-  return camera.target + axes.back * distance;
-}
-
-double fitted_height(const Camera& camera, const CameraAxes& axes, const std::vector<Vec3>& corners) {
-  double half = 0;
-  for (const Vec3& corner : corners) {
-    const Vec3 d = corner - camera.target;
-    half = std::max(
-        {half, std::abs(dot(d, axes.up)), std::abs(dot(d, axes.right)) * camera.height / camera.width});
-  }
-  return 2 * half / kFittedPart;
 }
 
 Status check_options(const ViewOptions& options) {
@@ -118,7 +28,7 @@ Status check_options(const ViewOptions& options) {
 void add_view_options(CLI::App& command, ViewOptions& options) {
   const char* group = "Camera";
   command.add_option("--view", options.view, "Standard view, fitted to the model")
-      ->check(CLI::IsMember(view_names()))
+      ->check(CLI::IsMember(std::vector<std::string>(std::begin(kViewNames), std::end(kViewNames))))
       ->capture_default_str()
       ->group(group);
   const auto vector = [&](const char* name, std::vector<double>& to, const char* text) {
@@ -150,38 +60,30 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
 
 Result<Camera> make_camera(const ViewOptions& options, const Model& model) {
   if (const Status status = check_options(options); !status.ok()) return status;
-  const StandardView& view = find_view(options.view);
+  Camera settings;
+  settings.fov_degrees = options.fov_degrees;
+  settings.orthographic = options.orthographic;
+  settings.width = options.resolution[0];
+  settings.height = options.resolution[1];
   const Box3 box = bounding_box(model);
-  const std::vector<Vec3> corners = instance_corners(model);
+  const Result<Camera> fitted = fit_view(box, options.view, settings);
+  if (!fitted.ok()) return fitted.status();
 
-  Camera camera;
-  camera.fov_degrees = options.fov_degrees;
-  camera.orthographic = options.orthographic;
-  camera.width = options.resolution[0];
-  camera.height = options.resolution[1];
-  camera.target = !options.target.empty() ? to_vec(options.target) : box.empty() ? Vec3{} : box.center();
-  // An explicit eye turns away from the standard view, and Z is up unless said otherwise.
-  camera.up = !options.up.empty() ? to_vec(options.up) : options.eye.empty() ? view.up : Vec3{0, 0, 1};
-  camera.eye = options.eye.empty() ? camera.target + normalized(view.from) : to_vec(options.eye);
+  Camera camera = *fitted;
+  const Vec3 from_target = camera.eye - camera.target;
+  if (!options.eye.empty()) {
+    camera.eye = to_vec(options.eye);
+    camera.target = box.empty() ? Vec3{} : box.center();
+    camera.up = {0, 0, 1};  // an explicit eye turns away from the standard view
+  }
+  if (!options.target.empty()) {
+    camera.target = to_vec(options.target);
+    if (options.eye.empty()) camera.eye = camera.target + from_target;
+  }
+  if (!options.up.empty()) camera.up = to_vec(options.up);
+  if (options.height > 0) camera.ortho_height = options.height;
   if (camera.eye == camera.target)
     return {StatusCode::invalid_argument, "--eye and --target are the same point"};
-
-  const CameraAxes axes = camera_axes(camera);
-  // A model without extent in any direction is looked at from one unit away.
-  const double extent = box.diagonal() > 0 ? box.diagonal() : 1;
-  if (options.eye.empty() && camera.orthographic) {
-    camera.eye = camera.target + axes.back * extent;  // a parallel picture does not depend on the distance
-  } else if (options.eye.empty() && box.diagonal() > 0) {
-    camera.eye = fitted_eye(camera, axes, corners, !options.target.empty());
-    if (options.target.empty())
-      camera.target = camera.eye - axes.back * dot(camera.eye - camera.target, axes.back);
-  } else if (options.eye.empty()) {
-    camera.eye = camera.target + axes.back * extent;
-  }
-  if (camera.orthographic) {
-    const double fitted = fitted_height(camera, axes, corners);
-    camera.ortho_height = options.height > 0 ? options.height : fitted > 0 ? fitted : extent;
-  }
   return camera;
 }
 

@@ -27,13 +27,8 @@ struct ViewOptions {
 
 void add_view_options(CLI::App& command, ViewOptions& options);
 
-/// Of the picture's width and height, the part that a fitted model fills at most.
-inline constexpr double kFittedPart = 0.9;
-
-/// What was not given explicitly is fitted. Without an eye, the camera looks as the standard view does, from
-/// as near (or in parallel projection as high) as lets every instance's box fill at most kFittedPart of the
-/// picture; a target that is given stays in the middle. With an eye but no target it looks at the middle of
-/// the model's box.
+/// What is not given is the standard view's, fitted to the model's box. A target without an eye is looked at
+/// from the same side and as far off; an eye without a target looks at the middle of the box, Z up.
 Result<Camera> make_camera(const ViewOptions& options, const Model& model);
 
 }  // namespace dupin::app

@@ -1,9 +1,11 @@
-// Cameras: what fitting promises.
+// Cameras from options, and what fitting promises.
 #include "../../app/view.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "../../render/view.h"
 
 namespace dupin::app {
 namespace {
@@ -52,7 +54,7 @@ TEST_P(StandardViews, ShowTheWholeModelAsLargeAsTheyMay) {
           ASSERT_TRUE(camera.ok());
           const Vec2 extent = extent_in_picture(*camera, bounding_box(model));
           // A box 10,000 km from zero has coordinates that are rounded to nanometres.
-          EXPECT_NEAR(std::max(extent.x, extent.y), kFittedPart, 1e-4)
+          EXPECT_NEAR(std::max(extent.x, extent.y), 1 - kFitMargin, 1e-4)
               << size.x << " " << at.x << " " << orthographic;
         }
 }
@@ -92,6 +94,27 @@ TEST(View, AParallelPictureHasTheHeightAskedFor) {
   ASSERT_TRUE(camera.ok());
   EXPECT_TRUE(camera->orthographic);
   EXPECT_EQ(camera->ortho_height, 7.5);
+}
+
+TEST(View, ATargetWithoutAnEyeIsSeenFromTheSameSideAndAsFarOff) {
+  const Model model = box_model({0, 0, 0}, {1, 2, 3});
+  ViewOptions options;
+  const Result<Camera> fitted = make_camera(options, model);
+  options.target = {5, 6, 7};
+  const Result<Camera> moved = make_camera(options, model);
+  ASSERT_TRUE(fitted.ok() && moved.ok());
+  EXPECT_EQ(moved->target, (Vec3{5, 6, 7}));
+  EXPECT_LT(distance(moved->eye - moved->target, fitted->eye - fitted->target), 1e-12);
+}
+
+TEST(View, AnEyeWithoutATargetLooksAtTheMiddle) {
+  ViewOptions options;
+  options.eye = {10, 10, 10};
+  options.view = "top";
+  const Result<Camera> camera = make_camera(options, box_model({0, 0, 0}, {1, 2, 3}));
+  ASSERT_TRUE(camera.ok());
+  EXPECT_EQ(camera->target, (Vec3{0.5, 1, 1.5}));
+  EXPECT_EQ(camera->up, (Vec3{0, 0, 1}));
 }
 
 TEST(View, AnEmptyModelHasACamera) {
