@@ -73,7 +73,8 @@ class FaceBuilder {
     if (!bounded) return skip("an edge of it has no bounded range"), std::nullopt;
 
     const StoredPcurve stored = stored_pcurve(wire_edge.shape, task_.shape);
-    use.trim.seam = stored.seam;
+    // An edge may have pcurves on both sides of a seam and yet bound the face on one of them only.
+    use.trim.seam = stored.seam && uses_of(wire_edge.numbers.edge) == 2;
     std::optional<Curve2> pcurve = matched(stored, edge);
     std::optional<Curve2> file = pcurve;
     double deviation = pcurve && edge.curve ? deviation_of(*pcurve, edge) : 0;
@@ -92,6 +93,14 @@ class FaceBuilder {
     result_.deviations.emplace_back(use.trim.edge, deviation);
     if (!(deviation <= kWrong * size_)) result_.has_stray_edge = true;
     return use;
+  }
+
+  long uses_of(std::uint32_t edge) const {
+    long count = 0;
+    for (const auto& wire : task_.wires)
+      count += std::count_if(wire.begin(), wire.end(),
+                             [&](const WireEdge& other) { return other.numbers.edge == edge; });
+    return count;
   }
 
   // The stored pcurve over the edge's own parameters.

@@ -31,6 +31,7 @@ const std::vector<std::string>& varied_files() {
                                                "cad/occt/screw.step",
                                                "cad/occt/MODERN_Sink_1.brep",
                                                "cad/occt/CrankArm.brep",
+                                               "cad/occt/fuse.brep",
                                                "cad/occt/hammer.iges",
                                                "cad/freecad/SOT23.igs",
                                                "cad/freecad/cylinderSeam10.brep",

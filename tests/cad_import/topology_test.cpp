@@ -48,6 +48,19 @@ void expect_pcurves_on_curves(const Part& part, const Face& face) {
     }
 }
 
+// A seam runs twice, once each way; nothing else does.
+void expect_seams_run_twice(const Face& face) {
+  std::map<std::uint32_t, std::pair<int, int>> runs;
+  for (const Loop& loop : face.loops)
+    for (const Trim& trim : loop)
+      if (!trim.degenerate) ++(trim.reversed ? runs[trim.edge].second : runs[trim.edge].first);
+  for (const Loop& loop : face.loops)
+    for (const Trim& trim : loop)
+      if (trim.seam) {
+        EXPECT_EQ(runs[trim.edge], std::pair(1, 1));
+      }
+}
+
 void expect_same_region(const Part& part, const Face& face, const TopoDS_Face& shape, std::mt19937& random,
                         int& different, int& compared) {
   std::uniform_real_distribution<double> unit(0, 1);
@@ -72,6 +85,7 @@ void check_file(const std::string& path) {
       SCOPED_TRACE("face " + std::to_string(i));
       const Face& face = built.part.faces[i];
       expect_pcurves_on_curves(built.part, face);
+      expect_seams_run_twice(face);
       if (!face.loops.empty())
         expect_same_region(built.part, face, built.shapes[i], random, different, compared);
     }
