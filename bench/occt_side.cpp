@@ -10,6 +10,7 @@
 #include <Message_Messenger.hxx>
 #include <Poly_Triangulation.hxx>
 #include <STEPControl_Reader.hxx>
+#include <Standard_Failure.hxx>
 #include <TopExp.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
@@ -146,7 +147,11 @@ OcctShape::Triangles OcctShape::triangles() const {
     const BRepAdaptor_Surface surface(TopoDS::Face(face.Located(TopLoc_Location())), false);
     if (surface.GetType() <= GeomAbs_Sphere) continue;  // plane, cylinder, cone, sphere come first
     counts.on_curved += mesh->NbTriangles();
-    if (mesh->HasUVNodes()) add_normal_errors(surface, *mesh, errors);
+    try {
+      if (mesh->HasUVNodes()) add_normal_errors(surface, *mesh, errors);
+    } catch (const Standard_Failure&) {
+      // Where the kernel cannot evaluate its own surface the face has no say in what normals are to be like.
+    }
   }
   counts.normal_p99_degrees = weighted_percentile(errors, 0.99);
   return counts;

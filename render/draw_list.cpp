@@ -1,6 +1,7 @@
 #include "draw_list.h"
 
 #include <bit>
+#include <map>
 #include <limits>
 
 namespace dupin {
@@ -12,6 +13,10 @@ constexpr double kNearestOfFar = 1e-6;
 
 /// Curved DPs nearer than this many radii of their bounding sphere are drawn by their prisms: nothing of the others is near the eye.
 constexpr double kProxyDistance = 1.2;
+
+/// Planar DPs with pieces are drawn by rectangles of their covers whose cells are about this large: smaller ones waste more pixels
+/// around them than they spare, and edges, half their width and half a pixel, must not reach over a cell's margin.
+constexpr double kCellPx = 16;
 
 struct Plane3 {
   Vec3 n;
@@ -153,11 +158,14 @@ class Footprints {
   Footprints(const ViewRays& view, std::vector<std::array<int, 2>>& bands) : view_(view), bands_(bands) {
     bands_.assign(static_cast<std::size_t>((view.height + kBandRows - 1) / kBandRows), {view.width, 0});
   }
-  /// Picture coordinates of the centre, of their reach, or of everything where the sphere comes close to the eye.
-  void add(const PartCamera& camera, const Vec3& center, double radius) {
+  /// The sphere's radius in pixels; infinite, and the whole picture, where it comes close to the eye.
+  double add(const PartCamera& camera, const Vec3& center, double radius) {
     const double w = camera.perspective ? dot(camera.depth.n, center) + camera.depth.d : 1;
     const double dw = camera.perspective ? radius * length(camera.depth.n) : 0;
-    if (w - dw < 0.05 * w) return add_pixels(0, view_.width, 0, view_.height);
+    if (w - dw < 0.05 * w) {
+      add_pixels(0, view_.width, 0, view_.height);
+      return std::numeric_limits<double>::infinity();
+    }
     std::array<double, 4> ends;
     for (std::size_t k = 0; k < 2; ++k) {
       const Plane3& row = camera.rows[k];
@@ -168,6 +176,7 @@ class Footprints {
       ends[2 * k + 1] = (at + reach + 1) * size / 2;
     }
     add_pixels(ends[0] - 2, ends[1] + 2, ends[2] - 2, ends[3] + 2);
+    return std::max(ends[1] - ends[0], ends[3] - ends[2]) / 2;
   }
 
  private:
@@ -212,6 +221,7 @@ struct Candidate {
   std::uint64_t key;
   DrawItem item;
   const DpBounds* dp;
+  double radius_px;
 };
 
 std::uint64_t sort_key(std::uint32_t kind, float depth) {
@@ -222,25 +232,125 @@ std::uint64_t sort_key(std::uint32_t kind, float depth) {
 }
 
 void add_dps(const SceneInstance& instance, std::uint32_t index, const ScenePart& part, const PartCamera& camera,
-             Footprints& footprints, std::vector<Candidate>& candidates) {
+             Footprints& footprints, bool flats, std::vector<Candidate>& candidates) {
   const double depth_scale = length(camera.depth.n);
   for (std::size_t i = 0; i < part.dps.size(); ++i) {
     const DpBounds& dp = part.dps[i];
     if (out_of_view(dp, camera) || (camera.cull_turned_away && turned_away(dp, camera))) continue;
-    footprints.add(camera, dp.center, dp.radius);
+    const double radius_px = footprints.add(camera, dp.center, dp.radius);
     const double depth = dot(camera.depth.n, dp.center) + camera.depth.d;
-    std::uint32_t kind = dp.kind;
+    std::uint32_t kind = flats ? dp.kind : dp.kind & ~kFlatKind;
     if (kind & kCurvedKind) {
       if (camera.cull_turned_away) kind |= kFrontOnlyKind;
       if (camera.perspective && depth < kProxyDistance * dp.radius * depth_scale) kind |= kPrismKind;
     }
     const std::uint32_t color = instance.face_colors.empty() ? instance.color : instance.face_colors[dp.color_face];
     candidates.push_back({sort_key(kind, static_cast<float>(depth)),
-                          {dp.record, index, instance.first_primitive + static_cast<std::uint32_t>(i) + 1, color}, &dp});
+                          {dp.record, index, instance.first_primitive + static_cast<std::uint32_t>(i) + 1, color}, &dp, radius_px});
   }
 }
 
+/// Rectangles of planar DPs, by kind.
+using Rectangles = std::map<std::uint32_t, std::vector<Texel>>;
+
+std::uint32_t word(double v) { return std::bit_cast<std::uint32_t>(static_cast<float>(v)); }
+Texel texel_of(double x, double y, double z, double w) { return {word(x), word(y), word(z), word(w)}; }
+
+void add_rectangle(const Box2& b, std::size_t slot, std::vector<Texel>& texels) {
+  texels.push_back(texel_of(b.lo.x, b.lo.y, b.hi.x, b.hi.y));
+  texels.push_back({static_cast<std::uint32_t>(slot), 0, 0, 0});
+}
+
+/// With the pieces that reach into it, features first.
+void add_rectangle(const BoundaryRectangle& r, std::size_t slot, const FlatPieces& room, std::vector<Texel>& texels) {
+  add_rectangle(r.box, slot, texels);
+  const std::size_t head = texels.size() - 1;
+  std::uint32_t features[2] = {0, 0};
+  for (const bool feature : {true, false})
+    for (const LinePiece& l : r.lines) {
+      if (l.feature != feature) continue;
+      const Vec2 a = l.p0 - r.reference, b = l.p1 - r.reference;
+      texels.push_back(texel_of(a.x, a.y, b.x, b.y));
+      features[0] += feature;
+    }
+  texels.resize(head + 1 + room.lines);
+  for (const bool feature : {true, false})
+    for (const ArcPiece& arc : r.arcs) {
+      if (arc.feature != feature) continue;
+      append_arc(arc, r.reference, texels);
+      features[1] += feature;
+    }
+  texels.resize(head + 1 + room.lines + 2 * room.arcs);
+  texels[head] = {static_cast<std::uint32_t>(slot) | (r.reference_inside ? 0x80000000U : 0U),
+                  static_cast<std::uint32_t>(r.lines.size() | r.arcs.size() << 8) | features[0] << 16 | features[1] << 24,
+                  word(r.reference.x), word(r.reference.y)};
+}
+
+/// The kind of planar.vert that has room for the rectangle's pieces, or that of the whole DP.
+std::uint32_t rectangle_kind(const BoundaryRectangle& r, std::uint32_t whole, bool flats) {
+  for (const std::uint32_t flat : {4U, 5U}) {
+    const FlatPieces& room = kFlatPieces[flat - 1];
+    if (flats && r.lines.size() <= room.lines && r.arcs.size() <= room.arcs) return flat << kFlatShift;
+  }
+  return whole;
+}
+
+void add_planar(const Candidate& c, std::uint32_t kind, std::size_t slot, bool flats, Rectangles& rectangles) {
+  std::size_t level = std::size(kCoverResolutions);
+  while (level > 0 && 2 * c.radius_px < kCellPx * 1.4 * kCoverResolutions[level - 1]) --level;
+  const PlanarCover& cover = (*c.dp->covers)[level > 0 ? level - 1 : 0];
+  if (level > 0) {
+    for (const BoundaryRectangle& r : cover.boundary) {
+      const std::uint32_t own = rectangle_kind(r, kind, flats);
+      if (own == kind) {
+        add_rectangle(r.box, slot, rectangles[kind]);
+      } else {
+        add_rectangle(r, slot, kFlatPieces[(own >> kFlatShift) - 1], rectangles[own]);
+      }
+    }
+    for (const Box2& b : cover.inside) add_rectangle(b, slot, rectangles[kInsideKind]);
+    return;
+  }
+  Box2 whole;
+  for (const BoundaryRectangle& r : cover.boundary) whole.add(r.box.lo), whole.add(r.box.hi);
+  for (const Box2& b : cover.inside) whole.add(b.lo), whole.add(b.hi);
+  if (!whole.empty()) add_rectangle(whole, slot, rectangles[kind]);
+}
+
+/// Planar DPs without pieces, then rectangles, then curved DPs.
+void fill_groups(const std::vector<Candidate>& candidates, bool flats, DrawList& list) {
+  Rectangles rectangles;
+  std::vector<DrawGroup> curved;
+  DrawGroup whole;
+  for (const Candidate& c : candidates) {
+    const auto kind = static_cast<std::uint32_t>(c.key >> 32 & 0xffff);
+    const auto slot = static_cast<std::uint32_t>(list.items.size());
+    list.items.push_back(c.item);
+    if (kind == 0) {
+      ++whole.count;  // they come first
+    } else if (!(kind & kCurvedKind)) {
+      add_planar(c, kind, slot, flats, rectangles);
+    } else {
+      if (curved.empty() || curved.back().kind != kind) curved.push_back({kind, slot, 0});
+      ++curved.back().count;
+    }
+  }
+  if (whole.count) list.groups.push_back(whole);
+  for (const auto& [kind, texels] : rectangles) {
+    const auto first = static_cast<std::uint32_t>(list.rectangles.size());
+    list.groups.push_back({kind, first, static_cast<std::uint32_t>(texels.size()) / rectangle_texels(kind)});
+    list.rectangles.insert(list.rectangles.end(), texels.begin(), texels.end());
+  }
+  list.groups.insert(list.groups.end(), curved.begin(), curved.end());
+}
+
 }  // namespace
+
+std::uint32_t rectangle_texels(std::uint32_t kind) {
+  if (!(kind & kFlatKind)) return 2;
+  const FlatPieces& room = kFlatPieces[((kind & kFlatKind) >> kFlatShift) - 1];
+  return 2 + room.lines + 2 * room.arcs;
+}
 
 std::uint32_t DrawList::primitives() const {
   auto n = static_cast<std::uint32_t>(items.size());
@@ -248,11 +358,11 @@ std::uint32_t DrawList::primitives() const {
   return n;
 }
 
-void build_draw_list(const Scene::Impl& scene, const ViewRays& view, DrawList& list) {
+void build_draw_list(const Scene::Impl& scene, const ViewRays& view, bool flats, DrawList& list) {
   list.instances.clear();
   list.items.clear();
   list.groups.clear();
-  list.inner.clear();
+  list.rectangles.clear();
   list.runs.clear();
   depth_range(scene, view, list);
   const std::array<Plane3, 4> sides = side_planes(view);
@@ -269,22 +379,13 @@ void build_draw_list(const Scene::Impl& scene, const ViewRays& view, DrawList& l
       list.runs.push_back({index, part.first_triangle, part.triangles, instance.first_primitive});
       footprints.add(camera, part.box.center() - part.anchor, part.box.diagonal() / 2);
     }
-    add_dps(instance, index, part, camera, footprints, candidates);
+    add_dps(instance, index, part, camera, footprints, flats, candidates);
   }
   // Equal keys keep the model's order, by the primitive's number: the same list whatever the sorting algorithm.
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     return a.key != b.key ? a.key < b.key : a.item.primitive < b.item.primitive;
   });
-  for (const Candidate& c : candidates) {
-    const auto kind = static_cast<std::uint32_t>(c.key >> 32 & 0xffff);
-    if (list.groups.empty() || list.groups.back().kind != kind) list.groups.push_back({kind, 0});
-    ++list.groups.back().count;
-    for (const Box2& b : c.dp->inner) {
-      const auto f = [](double v) { return static_cast<float>(v); };
-      list.inner.push_back({{f(b.lo.x), f(b.lo.y), f(b.hi.x), f(b.hi.y)}, static_cast<std::uint32_t>(list.items.size()), {}});
-    }
-    list.items.push_back(c.item);
-  }
+  fill_groups(candidates, flats, list);
 }
 
 }  // namespace dupin

@@ -85,12 +85,7 @@ void encode_pieces(const PartDps& part, const QuadricDp& dp, std::vector<Texel>&
     const Vec2 a = p.p0 - r, b = p.p1 - r;
     texels.push_back(texel(a.x, a.y, b.x, b.y));
   };
-  const auto put_arc = [&](const ArcPiece& p) {
-    const bool turn = cross(p.p1 - p.p0, p.p2 - p.p0) < 0;
-    const Vec2 a = (turn ? p.p2 : p.p0) - r, b = p.p1 - r, c = (turn ? p.p0 : p.p2) - r;
-    texels.push_back(texel(a.x, a.y, b.x, b.y));
-    texels.push_back(texel(c.x, c.y, 4 * p.w * p.w, 0));
-  };
+  const auto put_arc = [&](const ArcPiece& p) { append_arc(p, r, texels); };
   const auto put_ellipse = [&](const EllipsePiece& p) {
     texels.push_back(texel(p.center.x - r.x, p.center.y - r.y, p.mxx, p.mxy));
     texels.push_back(texel(p.myy, 0, 0, 0));
@@ -105,6 +100,13 @@ void encode_pieces(const PartDps& part, const QuadricDp& dp, std::vector<Texel>&
 }
 
 }  // namespace
+
+void append_arc(const ArcPiece& p, Vec2 r, std::vector<Texel>& texels) {
+  const bool turn = cross(p.p1 - p.p0, p.p2 - p.p0) < 0;
+  const Vec2 a = (turn ? p.p2 : p.p0) - r, b = p.p1 - r, c = (turn ? p.p0 : p.p2) - r;
+  texels.push_back(texel(a.x, a.y, b.x, b.y));
+  texels.push_back(texel(c.x, c.y, 4 * p.w * p.w, 0));
+}
 
 Status encode_dp(const PartDps& part, const QuadricDp& dp, const Vec3& anchor, std::uint32_t face,
                  std::vector<Texel>& texels) {

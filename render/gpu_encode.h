@@ -42,6 +42,9 @@ constexpr std::uint32_t kMaxPlanes = 255, kMaxLines = 4095, kMaxArcs = 4095, kMa
 Status encode_dp(const PartDps& part, const QuadricDp& dp, const Vec3& anchor, std::uint32_t face,
                  std::vector<Texel>& texels);
 
+/// An arc's two texels, relative to a reference.
+void append_arc(const ArcPiece& arc, Vec2 reference, std::vector<Texel>& texels);
+
 /// The frame that a record's texel 1 stands for, as the shader decodes it: u, v, n in float.
 std::array<Vec3, 3> decode_frame(const Texel& second, std::uint32_t meta);
 

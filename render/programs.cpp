@@ -12,7 +12,7 @@ Result<GLuint> Renderer::Impl::program(const std::string& key, const ProgramText
   ProgramText full = text;
   full.units = {{"heap", kHeapUnit}, {"instances", kInstancesUnit},         {"slots", kSlotsUnit},
                 {"ids", kIdsUnit},   {"vertices", kVerticesUnit},           {"indices", kIndicesUnit},
-                {"runs", kRunsUnit}, {"inner", kInnerUnit}, {"triangle_faces", kTriangleFacesUnit}};
+                {"runs", kRunsUnit}, {"rectangles", kRectanglesUnit}, {"triangle_faces", kTriangleFacesUnit}};
   for (const auto& unit : text.units) full.units.push_back(unit);
   auto built = build_program(*gl, full);
   if (!built) return built.status();

@@ -62,10 +62,13 @@ Status Renderer::Impl::init(const GetProcAddress& get_proc_address) {
   gl_version = text_of(*gl, GL_VERSION);
   gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &max_texels);
   gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &max_picture);
+  GLint components = 0;
+  gl->GetIntegerv(GL_MAX_VARYING_COMPONENTS, &components);
+  flats_ = components >= kFlatComponents;
   instances_ = TexelBuffer(*gl, GL_RGBA32F);
   slots_ = TexelBuffer(*gl, GL_RGBA32UI);
   runs_ = TexelBuffer(*gl, GL_RGBA32UI);
-  inner_ = TexelBuffer(*gl, GL_RGBA32UI);
+  rectangles_ = TexelBuffer(*gl, GL_RGBA32UI);
   for (GlBuffer* buffer : {&items_, &quads_, &prisms_}) *buffer = GlBuffer(*gl);
   for (GlVertexArray* array : {&item_array_, &quad_array_, &prism_array_, &empty_array_})
     *array = GlVertexArray(*gl);

@@ -29,7 +29,7 @@ enum Unit {
   kIndicesUnit,
   kTriangleFacesUnit,
   kRunsUnit,
-  kInnerUnit = kVerticesUnit  // not in one program
+  kRectanglesUnit = kVerticesUnit  // not in one program
 };
 
 /// What the shading pass writes, a picture each.
@@ -93,7 +93,6 @@ class Renderer::Impl {
   void upload_list(const Scene::Impl& scene);
   Status fill_slots();
   Status draw_visibility(const Pass& pass);
-  Status draw_inner(const Pass& pass);
   Status draw_dps(const Pass& pass);
   Status draw_triangles(const Pass& pass);
   Status shade(const Pass& pass);
@@ -104,7 +103,8 @@ class Renderer::Impl {
 
   std::map<std::string, GlProgram> programs_;
   DrawList list_;
-  TexelBuffer instances_, slots_, runs_, inner_;
+  bool flats_ = false;  ///< vertex shaders may hand on as much as kFlatPieces need
+  TexelBuffer instances_, slots_, runs_, rectangles_;
   GlBuffer items_, quads_, prisms_;
   GlVertexArray item_array_, quad_array_, prism_array_, empty_array_;
   std::uint32_t indexed_dps_ = 0;

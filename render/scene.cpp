@@ -4,13 +4,9 @@
 
 #include "../core/parallel.h"
 #include "draw_list.h"
-#include "inner_rectangles.h"
 
 namespace dupin {
 namespace {
-
-/// With fewer boundary pieces a pixel is tested as fast as it is found not to need it.
-constexpr std::size_t kFewestPiecesForInner = 2;
 
 constexpr Color kDefaultColor{0.55F, 0.57F, 0.60F, 1};
 
@@ -62,6 +58,50 @@ std::vector<std::uint32_t> number_faces(std::size_t count, const std::vector<boo
   return numbers;
 }
 
+bool has_features(const PartDps& part, const QuadricDp& dp) {
+  const auto any = [](const auto& pieces, std::uint32_t first, std::uint32_t count) {
+    for (std::uint32_t i = first; i < first + count; ++i)
+      if (pieces[i].feature) return true;
+    return false;
+  };
+  return (dp.feature_sides & 63) || any(part.planes, dp.first_plane, dp.planes) || any(part.lines, dp.first_line, dp.lines) ||
+         any(part.arcs, dp.first_arc, dp.arcs) || any(part.ellipses, dp.first_ellipse, dp.ellipses);
+}
+
+/// Few of them, for curved DPs: every one is a program more. Feature edges, which free-form cells seldom have, share one.
+std::uint32_t flat_kind(const QuadricDp& dp, bool features) {
+  for (const std::uint32_t flat : {1U, 2U, 3U, 6U}) {
+    const FlatPieces& room = kFlatPieces[flat - 1];
+    if (dp.lines <= room.lines && dp.arcs <= room.arcs && (!features || flat == 6)) return flat << kFlatShift;
+  }
+  return 0;
+}
+
+/// With clip planes, which the cover knows nothing of, the footprint's box is all boundary.
+std::unique_ptr<std::array<PlanarCover, 3>> covers_of(const PartDps& part, const QuadricDp& dp) {
+  auto covers = std::make_unique<std::array<PlanarCover, 3>>();
+  for (std::size_t k = 0; k < 3; ++k) {
+    PlanarCover& cover = (*covers)[k];
+    if (dp.planes == 0) cover = planar_cover(part, dp, kCoverResolutions[k]);
+    if (dp.planes == 0) continue;
+    BoundaryRectangle& all = cover.boundary.emplace_back();
+    for (const Vec2 c : dp.footprint) all.box.add(c);
+  }
+  return covers;
+}
+
+/// See draw_list.h.
+std::uint32_t dp_kind(const PartDps& part, const QuadricDp& dp) {
+  std::uint32_t kind = (dp.planes > 0) * kPlanesKind | (dp.lines > 0) * kLinesKind | (dp.arcs > 0) * kArcsKind |
+                       (dp.ellipses > 0) * kEllipsesKind;
+  // A region without pieces that is all outside: some kind must look at `reference_inside`.
+  if (!dp.reference_inside && (kind & ~kPlanesKind) == 0) kind |= kLinesKind;
+  if (dp.planar) return kind;
+  const bool features = has_features(part, dp);
+  if (kind != 0 && (kind & (kPlanesKind | kEllipsesKind)) == 0) kind |= flat_kind(dp, features);
+  return kind | kCurvedKind | features * kFeaturesKind;
+}
+
 Status pack_dps(const Part& source, const PartDps& dps, ScenePart& part, SceneInfo& info,
                 std::vector<bool>& drawn, ScenePackage& package) {
   part.anchor = source.box.empty() ? dps.dps.front().origin : source.box.center();
@@ -71,10 +111,13 @@ Status pack_dps(const Part& source, const PartDps& dps, ScenePart& part, SceneIn
     drawn[dp.face] = true;
   }
   const std::vector<std::uint32_t> numbers = number_faces(source.faces.size(), drawn, part.drawn_faces);
-  std::vector<std::vector<Box2>> inner(dps.dps.size());
-  parallel_for(dps.dps.size(), [&](std::size_t i) {
-    if (dps.dps[i].planar && piece_count(dps.dps[i]) >= kFewestPiecesForInner) inner[i] = inner_rectangles(dps, dps.dps[i]);
-  }, 16);
+  std::vector<std::unique_ptr<std::array<PlanarCover, 3>>> covers(dps.dps.size());
+  parallel_for(
+      dps.dps.size(),
+      [&](std::size_t i) {
+        if (dps.dps[i].planar && dp_kind(dps, dps.dps[i]) != 0) covers[i] = covers_of(dps, dps.dps[i]);
+      },
+      16);
   for (const QuadricDp& dp : dps.dps) {
     DpBounds bounds = dp_bounds(dps, dp, part.anchor);
     bounds.record = static_cast<std::uint32_t>(package.heap.size());
@@ -82,7 +125,7 @@ Status pack_dps(const Part& source, const PartDps& dps, ScenePart& part, SceneIn
     if (!status.ok()) return status;
     info.clips += piece_count(dp);
     for (const Vec3& c : corners(dp)) part.box.add(dp.origin + dp.u * c.x + dp.v * c.y + dp.n() * c.z);
-    bounds.inner = std::move(inner[part.dps.size()]);
+    bounds.covers = std::move(covers[part.dps.size()]);
     part.dps.push_back(std::move(bounds));
   }
   info.primitives += dps.dps.size();
@@ -143,28 +186,6 @@ void place(const Model& model, const Instance& instance, const std::vector<std::
   scene.info.placed_primitives += part.dps.size() + part.triangles;
   scene.box.add(transform_box(instance.to_world, part.box));
   scene.instances.push_back(std::move(placed));
-}
-
-bool has_features(const PartDps& part, const QuadricDp& dp) {
-  const auto any = [](const auto& pieces, std::uint32_t first, std::uint32_t count) {
-    for (std::uint32_t i = first; i < first + count; ++i)
-      if (pieces[i].feature) return true;
-    return false;
-  };
-  return (dp.feature_sides & 63) || any(part.planes, dp.first_plane, dp.planes) || any(part.lines, dp.first_line, dp.lines) ||
-         any(part.arcs, dp.first_arc, dp.arcs) || any(part.ellipses, dp.first_ellipse, dp.ellipses);
-}
-
-/// See draw_list.h.
-std::uint32_t dp_kind(const PartDps& part, const QuadricDp& dp) {
-  std::uint32_t kind = (dp.planes > 0) * kPlanesKind | (dp.lines > 0) * kLinesKind | (dp.arcs > 0) * kArcsKind |
-                       (dp.ellipses > 0) * kEllipsesKind;
-  // A region without pieces that is all outside: some kind must look at `reference_inside`.
-  if (!dp.reference_inside && (kind & ~kPlanesKind) == 0) kind |= kLinesKind;
-  if (dp.planar) return kind;
-  const bool features = has_features(part, dp);
-  if (kind == kArcsKind && dp.arcs <= kMostFlatArcs && !features) kind |= static_cast<std::uint32_t>(dp.arcs) << kFlatArcsShift;
-  return kind | kCurvedKind | features * kFeaturesKind;
 }
 
 }  // namespace

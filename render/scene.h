@@ -7,9 +7,12 @@
 
 #include "gl_objects.h"
 #include "gpu_encode.h"
+#include "planar_cover.h"
 #include "renderer.h"
 
 namespace dupin {
+
+inline constexpr int kCoverResolutions[] = {6, 12, 24};
 
 /// What decides whether a DP is worth drawing, in the part's space relative to the anchor.
 struct DpBounds {
@@ -20,7 +23,8 @@ struct DpBounds {
   std::uint32_t record = 0;
   std::uint32_t color_face = 0;  ///< index of its face in the part
   bool planar = false;
-  std::vector<Box2> inner;  ///< rectangles of its (x, y) that are inside as a whole; planar with pieces only
+  /// Planar with pieces only: covers of kCoverResolutions.
+  std::unique_ptr<std::array<PlanarCover, 3>> covers;
   std::uint32_t kind = 0;  ///< see draw_list.h; without what depends on the camera
 };
 DpBounds dp_bounds(const PartDps& part, const QuadricDp& dp, const Vec3& anchor);

@@ -18,8 +18,18 @@ ProgramText dp_program(std::uint32_t kind, bool edges) {
   for (const auto& [bit, define] : names)
     if (kind & bit) text.defines.push_back(define);
   if (edges) text.defines.push_back("EDGES");
-  if (kind & kFlatArcsKind) text.defines.push_back("FLAT_ARCS " + std::to_string((kind & kFlatArcsKind) >> kFlatArcsShift));
-  if (kind & (kPlanesKind | kLinesKind | kArcsKind | kEllipsesKind)) text.defines.push_back("PIECES");
+  if (kind & kFlatKind) {
+    const FlatPieces& flat = kFlatPieces[((kind & kFlatKind) >> kFlatShift) - 1];
+    text.defines.push_back("FLAT_LINES " + std::to_string(flat.lines));
+    text.defines.push_back("FLAT_ARCS " + std::to_string(flat.arcs));
+    text.defines.push_back("RECTANGLE_TEXELS " + std::to_string(rectangle_texels(kind)));
+  }
+  if (kind & (kPlanesKind | kLinesKind | kArcsKind | kEllipsesKind | kFlatKind)) text.defines.push_back("PIECES");
+  if (kind & kInsideKind) {
+    text.vertex = {"proxy.glsl", "inside.vert"};
+    text.fragment = {"id.frag"};
+    return text;
+  }
   text.vertex = {"proxy.glsl", curved ? "curved.vert" : "planar.vert"};
   if (curved) text.fragment.push_back("quadric.glsl");
   text.fragment.push_back("pieces.glsl");
@@ -38,6 +48,8 @@ void Renderer::Impl::upload_list(const Scene::Impl& scene) {
     gl->BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(list_.items.size() * sizeof(DrawItem)),
                    list_.items.data(), GL_STREAM_DRAW);
   }
+  rectangles_.assign(list_.rectangles.data(), list_.rectangles.size() * sizeof(Texel), GL_STREAM_DRAW);
+  rectangles_.bind(kRectanglesUnit);
   std::vector<std::uint32_t> runs;
   std::uint32_t first = 0;
   for (const TriangleRun& run : list_.runs) {
@@ -98,39 +110,21 @@ void Renderer::Impl::grow_indices(std::uint32_t dps) {
   indexed_dps_ = dps;
 }
 
-Status Renderer::Impl::draw_inner(const Pass& pass) {
-  if (list_.inner.empty()) return {};
-  const auto name = program("inner", {{"proxy.glsl", "inner.vert"}, {"inner.frag"}, {}, {}, {}});
-  if (!name) return name.status();
-  set_view(*name, pass.view);
-  // Edges are left to the pixels that walk along the boundary.
-  gl->Uniform1f(gl->GetUniformLocation(*name, "shrink"), static_cast<float>(pass.edges() ? pass.options->edge_width_px / 2 + 1 : 0.05));
-  inner_.assign(list_.inner.data(), list_.inner.size() * sizeof(InnerRectangle), GL_STREAM_DRAW);
-  inner_.bind(kInnerUnit);
-  const auto count = static_cast<std::uint32_t>(list_.inner.size());
-  grow_indices(count);
-  gl->BindVertexArray(quad_array_.name());
-  gl->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(6 * count), GL_UNSIGNED_INT, nullptr);
-  return {};
-}
-
 Status Renderer::Impl::draw_dps(const Pass& pass) {
-  std::uint32_t first = 0;
   for (const DrawGroup& group : list_.groups) {
-    const bool edges = pass.edges() && (!(group.kind & kCurvedKind) || (group.kind & kFeaturesKind));
+    const bool edges = pass.edges() && (group.curved() ? group.kind & kFeaturesKind : group.kind != kInsideKind);
     const std::uint32_t kind = group.kind & ~kFeaturesKind;
     const auto name = program((edges ? "dp with edges " : "dp ") + std::to_string(kind), dp_program(kind, edges));
     if (!name) return name.status();
     set_view(*name, pass.view);
     gl->Uniform1f(gl->GetUniformLocation(*name, "edge_half_width"), static_cast<float>(pass.options->edge_width_px / 2));
-    gl->Uniform1i(gl->GetUniformLocation(*name, "first_slot"), static_cast<GLint>(first));
+    gl->Uniform1i(gl->GetUniformLocation(*name, "first"), static_cast<GLint>(group.first));
     grow_indices(group.count);
     const bool prism = group.kind & kPrismKind;
     gl->BindVertexArray(prism ? prism_array_.name() : quad_array_.name());
     if (prism) gl->Enable(GL_CULL_FACE);
     gl->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(group.count * (prism ? 36 : 6)), GL_UNSIGNED_INT, nullptr);
     gl->Disable(GL_CULL_FACE);
-    first += group.count;
   }
   return {};
 }
@@ -167,13 +161,12 @@ Status Renderer::Impl::draw_visibility(const Pass& pass) {
   const GLfloat farthest = 0;
   gl->ClearBufferuiv(GL_COLOR, 0, nothing);
   gl->ClearBufferfv(GL_DEPTH, 0, &farthest);
-  const Status inner = draw_inner(pass);
-  const Status dps = inner.ok() ? draw_dps(pass) : inner;
+  const Status dps = draw_dps(pass);
   return dps.ok() ? draw_triangles(pass) : dps;
 }
 
 Status Renderer::Impl::run(const Pass& pass) {
-  build_draw_list(*pass.scene, pass.view, list_);
+  build_draw_list(*pass.scene, pass.view, flats_, list_);
   view_spread_ = pass.view.perspective ? 1.0F : 0.0F;
   upload_list(*pass.scene);
   Status status = fill_slots();

@@ -1,6 +1,6 @@
 // A curved DP: a rectangle of the picture around the prism footprint × [z lo, z hi]; or, where that reaches behind the eye, the prism
 // itself, of which the far sides are drawn. Either way every pixel is tried once.
-uniform int first_slot;
+uniform int first;
 flat out vec3 s, f, p, q;
 flat out vec4 bend, depth;  // λu λv a b | c, z lo, z hi, rounding
 flat out vec3 side0, side1, side2, side3;
@@ -10,8 +10,28 @@ flat out vec2 z0;           // the depth where rays start, and their reach there
 flat out float ink;
 #endif
 #ifdef FLAT_ARCS
-flat out vec4 arcs[2 * FLAT_ARCS];
 flat out vec2 reference;
+flat out uvec2 flat_counts;
+#if FLAT_LINES
+flat out vec4 lines[FLAT_LINES];
+#endif
+#if FLAT_ARCS
+flat out vec4 arcs[2 * FLAT_ARCS];
+#endif
+
+// The pieces, with such that bound nothing in place of those that there are not.
+void fetch_pieces(int at, uint meta) {
+  uvec4 head = texelFetch(heap, at);
+  int line_count = int(head.x & 4095u), arc_count = int((head.x >> 12) & 4095u);
+  reference = uintBitsToFloat(head.zw);
+  flat_counts = uvec2((meta & kReferenceInside) != 0u ? 1u : 0u, (head.y & 255u) | ((head.y >> 12) & 255u) << 8);
+#if FLAT_LINES
+  for (int k = 0; k < FLAT_LINES; ++k) lines[k] = k < line_count ? heap_texel(at + 1 + k) : vec4(0.0);
+#endif
+#if FLAT_ARCS
+  for (int k = 0; k < 2 * FLAT_ARCS; ++k) arcs[k] = k < 2 * arc_count ? heap_texel(at + 1 + line_count + k) : vec4(0.0);
+#endif
+}
 #endif
 
 vec3 side_function(vec2 a, vec2 b, float rounding) {
@@ -59,7 +79,7 @@ float area(Rectangle r) {
 }
 
 // The smaller of the two rectangles around the prism's picture that are aligned with one of the footprint's first two sides.
-vec2 rectangle_corner(vec4 c01, vec4 c23, vec2 ends, vec4 rx, vec4 ry, vec4 rf, out float size) {
+vec2 picture_corner(vec4 c01, vec4 c23, vec2 ends, vec4 rx, vec4 ry, vec4 rf, out float size) {
   vec2 a = on_picture(c01.xy, ends.x, rx, ry, rf), b = on_picture(c01.zw, ends.x, rx, ry, rf);
   vec2 c = on_picture(c23.xy, ends.x, rx, ry, rf), d = on_picture(c23.zw, ends.x, rx, ry, rf);
   vec2 e = on_picture(c01.xy, ends.y, rx, ry, rf), f = on_picture(c01.zw, ends.y, rx, ry, rf);
@@ -75,9 +95,9 @@ vec2 rectangle_corner(vec4 c01, vec4 c23, vec2 ends, vec4 rx, vec4 ry, vec4 rf, 
 
 void main() {
   #ifdef PRISM
-  int slot = first_slot + (gl_VertexID >> 3), i = gl_VertexID & 3;
+  int slot = first + (gl_VertexID >> 3), i = gl_VertexID & 3;
 #else
-  int slot = first_slot + (gl_VertexID >> 2);
+  int slot = first + (gl_VertexID >> 2);
 #endif
   uvec4 t0 = texelFetch(slots, slot * kSlotTexels), t1 = texelFetch(slots, slot * kSlotTexels + 1);
   vec4 t3 = slot_texel(slot, 3), t5 = slot_texel(slot, 5), t11 = slot_texel(slot, 11);
@@ -91,8 +111,7 @@ void main() {
   z0 = vec2(t11.w, reach(t11.w));
   id = uvec3(uint(slot) + 1u, t0.w, t1.w);
 #ifdef FLAT_ARCS
-  reference = heap_texel(int(t1.w)).zw;
-  for (int k = 0; k < 2 * FLAT_ARCS; ++k) arcs[k] = heap_texel(int(t1.w) + 1 + k);
+  fetch_pieces(int(t1.w), t0.w);
 #endif
   side0 = side_function(c01.xy, c01.zw, t3.w);
   side1 = side_function(c01.zw, c23.xy, t3.w);
@@ -104,7 +123,7 @@ void main() {
 #ifdef PRISM
   gl_Position = prism_corner(c01, c23, vec2(t5.y, t5.z), rx, ry, rf, t11.y);
 #else
-  gl_Position = vec4(rectangle_corner(c01, c23, vec2(t5.y, t5.z), rx, ry, rf, size), 0.5, 1.0);
+  gl_Position = vec4(picture_corner(c01, c23, vec2(t5.y, t5.z), rx, ry, rf, size), 0.5, 1.0);
 #endif
 #ifdef EDGES
   ink = ink_for(size);

@@ -53,11 +53,11 @@ float cross_segment(inout Region at, vec2 here, vec2 a, vec2 b) {
 }
 #endif
 
-#ifdef LINES
+#if defined(LINES) || defined(FLAT_ARCS)
 void test_line(inout Region at, vec2 here, vec4 l, bool feature) {
   float side = cross_segment(at, here, l.xy, l.zw);
   vec2 ab = l.zw - l.xy, size = abs(ab);
-  at.near = at.near || (abs(side) <= at.rounding * max(size.x, size.y) && dot(here - l.xy, here - l.zw) <= 0.0);
+  at.near = at.near || (abs(side) < at.rounding * max(size.x, size.y) && dot(here - l.xy, here - l.zw) <= 0.0);
 #ifdef EDGES
   if (feature) meet_segment(at, side, here - l.xy, ab);
 #endif
@@ -76,7 +76,7 @@ void test_arc(inout Region at, vec2 here, vec4 a01, vec4 a2w, bool feature) {
   bool bulge = min(b0, b2) >= 0.0 && !(side > 0.0);
   at.inside = at.inside != (bulge && g > 0.0);
   vec2 turned = sharp * (e0 * b2 + e2 * b0) + 2.0 * side * e1, gradient = vec2(-turned.y, turned.x);
-  at.near = at.near || (bulge && g * g <= at.rounding * at.rounding * dot(gradient, gradient));
+  at.near = at.near || (bulge && g * g < at.rounding * at.rounding * dot(gradient, gradient));
 #ifdef EDGES
   // On the arc's side of the chord, and not past its ends by more than a little.
   if (feature && min(min(b0, b2), -side) >= -0.02 * cross2(e0, e1)) meet_edge(at, g, vec3(gradient, 0.0));
@@ -98,12 +98,25 @@ void test_ellipse(inout Region at, vec2 here, vec4 e, float myy, bool feature) {
 #endif
 
 #ifdef FLAT_ARCS
-flat in vec4 arcs[2 * FLAT_ARCS];
 flat in vec2 reference;
+flat in uvec2 flat_counts;  // 1 if the reference is inside, feature lines | feature arcs << 8
+#if FLAT_LINES
+flat in vec4 lines[FLAT_LINES];
+#endif
+#if FLAT_ARCS
+flat in vec4 arcs[2 * FLAT_ARCS];
+#endif
 void test_pieces(inout Region at, int texel, uint meta) {
-  at.inside = (meta & kReferenceInside) != 0u;
   vec2 here = at.p.xy - reference;
-  for (int i = 0; i < FLAT_ARCS; ++i) test_arc(at, here, arcs[2 * i], arcs[2 * i + 1], false);
+  at.inside = flat_counts.x != 0u;
+#if FLAT_LINES
+  int feature_lines = int(flat_counts.y & 255u);
+  for (int i = 0; i < FLAT_LINES; ++i) test_line(at, here, lines[i], i < feature_lines);
+#endif
+#if FLAT_ARCS
+  int feature_arcs = int(flat_counts.y >> 8);
+  for (int i = 0; i < FLAT_ARCS; ++i) test_arc(at, here, arcs[2 * i], arcs[2 * i + 1], i < feature_arcs);
+#endif
   at.inside = at.inside || at.near;
 }
 #elif defined(PIECES)

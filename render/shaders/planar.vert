@@ -1,6 +1,12 @@
-// A planar DP: its footprint itself is drawn. What is covered follows from the footprint's sides as linear functions of (X, Y):
+// A planar DP: its footprint itself is drawn, or a rectangle of it. What is covered follows from the footprint's sides as linear functions of (X, Y):
 // with (x, y, 1)·W linear in the picture's coordinates, so is n·(x, y)·W + d·W.
-uniform int first_slot;
+uniform int first;
+#ifdef PIECES
+uniform usamplerBuffer rectangles;  // see draw_list.h
+#ifndef RECTANGLE_TEXELS
+#define RECTANGLE_TEXELS 2
+#endif
+#endif
 flat out vec3 side0, side1, side2, side3;
 flat out uint id;
 #ifdef EDGES
@@ -11,6 +17,16 @@ flat out float ink;
 flat out vec3 row_x, row_y, row_w;
 flat out ivec2 pieces;  // texel, slot's meta
 flat out float rounding;
+#endif
+#ifdef FLAT_ARCS
+flat out vec2 reference;
+flat out uvec2 flat_counts;
+#if FLAT_LINES
+flat out vec4 lines[FLAT_LINES];
+#endif
+#if FLAT_ARCS
+flat out vec4 arcs[2 * FLAT_ARCS];
+#endif
 #endif
 
 // In pixels; a corner that is there twice has no side.
@@ -24,7 +40,14 @@ vec3 side_function(vec2 a, vec2 b, mat3 rows, float rounding) {
 }
 
 void main() {
-  int slot = first_slot + (gl_VertexID >> 2), i = gl_VertexID & 3;
+  int i = gl_VertexID & 3;
+#ifdef PIECES
+  int rectangle = first + (gl_VertexID >> 2) * RECTANGLE_TEXELS;
+  uvec4 head = texelFetch(rectangles, rectangle + 1);
+  int slot = int(head.x & 0x7fffffffu);
+#else
+  int slot = first + (gl_VertexID >> 2);
+#endif
   uvec4 t0 = texelFetch(slots, slot * kSlotTexels), t1 = texelFetch(slots, slot * kSlotTexels + 1);
   vec3 s = uintBitsToFloat(t0.xyz), f = uintBitsToFloat(t1.xyz), p = slot_texel(slot, 2).xyz;
   vec4 t3 = slot_texel(slot, 3);
@@ -56,6 +79,16 @@ void main() {
   pieces = ivec2(t1.w, t0.w);
   rounding = widen;
 #endif
+#ifdef FLAT_ARCS
+  reference = uintBitsToFloat(head.zw);
+  flat_counts = uvec2(head.x >> 31, head.y >> 16);
+#if FLAT_LINES
+  for (int k = 0; k < FLAT_LINES; ++k) lines[k] = uintBitsToFloat(texelFetch(rectangles, rectangle + 2 + k));
+#endif
+#if FLAT_ARCS
+  for (int k = 0; k < 2 * FLAT_ARCS; ++k) arcs[k] = uintBitsToFloat(texelFetch(rectangles, rectangle + 2 + FLAT_LINES + k));
+#endif
+#endif
 
   // Both sides that meet in the corner are moved out by kGrow pixels.
   vec2 c = corner_of(c01, c23, i), to = side_to(c01, c23, i), from = side_from(c01, c23, i);
@@ -68,10 +101,11 @@ void main() {
                  (features & 4u) != 0u ? 0.0 : 1e30, (features & 8u) != 0u ? 0.0 : 1e30);
   ink = ink_for(max(length(ju * (c23.x - c01.x) + jv * (c23.y - c01.y)), length(ju * (c23.z - c01.z) + jv * (c23.w - c01.w))));
 #endif
+#ifdef PIECES
+  gl_Position = rectangle_corner(uintBitsToFloat(texelFetch(rectangles, rectangle)), i, kGrow, rx, ry, rf);
+#else
   c += miter(to, from, min(kGrow * vec2(way_per_pixel(ju, jv, to), way_per_pixel(ju, jv, from)), vec2(extent)));
   vec3 at = vec3(c, 1.0);
   gl_Position = to_clip(vec2(dot(rx.xyw, at), dot(ry.xyw, at)), dot(rf.xyw, at));
-#ifdef PIECES
-  gl_Position.z *= kBehind;
 #endif
 }
