@@ -1,7 +1,7 @@
 // A pinhole or parallel camera in double precision, and how large a pixel is where.
 //
-// Pixel (0,0) is the top left; the ray of a pixel goes through its centre. The vertical field of view is gluPerspective's, the
-// view gluLookAt's.
+// Pixel (0,0) is the top left; the ray of a pixel goes through its centre. The vertical field of view is
+// gluPerspective's, the view gluLookAt's.
 #ifndef DUPIN_CORE_CAMERA_H
 #define DUPIN_CORE_CAMERA_H
 
@@ -11,13 +11,14 @@ namespace dupin {
 
 struct Camera {
   Vec3 eye{0, 0, 1}, target{0, 0, 0}, up{0, 0, 1};
-  double fov_degrees = 30;      ///< vertical; perspective only
+  double fov_degrees = 30;  ///< vertical; perspective only
   bool orthographic = false;
-  double ortho_height = 1;      ///< model units from the bottom of the picture to the top; orthographic only
+  double ortho_height = 1;  ///< model units from the bottom of the picture to the top; orthographic only
   int width = 1024, height = 1024;
 };
 
-/// Right, up and backward (towards the viewer) axes; right-handed, unit. `up` parallel to the view is replaced.
+/// Right, up and backward (towards the viewer) axes; right-handed, unit. `up` parallel to the view is
+/// replaced.
 struct CameraAxes {
   Vec3 right, up, back;
 };

@@ -13,7 +13,9 @@ namespace {
 std::atomic<int> g_thread_limit{0};
 }
 
-void set_thread_limit(int threads) { g_thread_limit = std::max(0, threads); }
+void set_thread_limit(int threads) {
+  g_thread_limit = std::max(0, threads);
+}
 
 int thread_limit() {
   const int limit = g_thread_limit;

@@ -30,8 +30,8 @@ struct Status {
 template <class T>
 class Result {
  public:
-  Result(T value) : state_(std::move(value)) {}              // NOLINT: implicit on purpose
-  Result(Status failure) : state_(std::move(failure)) {}     // NOLINT: implicit on purpose
+  Result(T value) : state_(std::move(value)) {}           // NOLINT: implicit on purpose
+  Result(Status failure) : state_(std::move(failure)) {}  // NOLINT: implicit on purpose
   Result(StatusCode code, std::string message) : state_(Status{code, std::move(message)}) {}
   bool ok() const { return std::holds_alternative<T>(state_); }
   explicit operator bool() const { return ok(); }

@@ -17,17 +17,37 @@ struct Vec2 {
   double operator[](int i) const { return i == 0 ? x : y; }
   friend bool operator==(const Vec2&, const Vec2&) = default;
 };
-inline Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
-inline Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
-inline Vec2 operator-(Vec2 a) { return {-a.x, -a.y}; }
-inline Vec2 operator*(Vec2 a, double s) { return {a.x * s, a.y * s}; }
-inline Vec2 operator*(double s, Vec2 a) { return a * s; }
-inline Vec2 operator/(Vec2 a, double s) { return {a.x / s, a.y / s}; }
-inline Vec2& operator+=(Vec2& a, Vec2 b) { return a = a + b; }
-inline double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
+inline Vec2 operator+(Vec2 a, Vec2 b) {
+  return {a.x + b.x, a.y + b.y};
+}
+inline Vec2 operator-(Vec2 a, Vec2 b) {
+  return {a.x - b.x, a.y - b.y};
+}
+inline Vec2 operator-(Vec2 a) {
+  return {-a.x, -a.y};
+}
+inline Vec2 operator*(Vec2 a, double s) {
+  return {a.x * s, a.y * s};
+}
+inline Vec2 operator*(double s, Vec2 a) {
+  return a * s;
+}
+inline Vec2 operator/(Vec2 a, double s) {
+  return {a.x / s, a.y / s};
+}
+inline Vec2& operator+=(Vec2& a, Vec2 b) {
+  return a = a + b;
+}
+inline double dot(Vec2 a, Vec2 b) {
+  return a.x * b.x + a.y * b.y;
+}
 /// The z component of the cross product: twice the signed area of the triangle (0, a, b).
-inline double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
-inline double length(Vec2 a) { return std::sqrt(dot(a, a)); }
+inline double cross(Vec2 a, Vec2 b) {
+  return a.x * b.y - a.y * b.x;
+}
+inline double length(Vec2 a) {
+  return std::sqrt(dot(a, a));
+}
 
 struct Vec3 {
   double x = 0, y = 0, z = 0;
@@ -35,32 +55,58 @@ struct Vec3 {
   double operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
   friend bool operator==(const Vec3&, const Vec3&) = default;
 };
-inline Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
-inline Vec3 operator*(const Vec3& a, double s) { return {a.x * s, a.y * s, a.z * s}; }
-inline Vec3 operator*(double s, const Vec3& a) { return a * s; }
-inline Vec3 operator/(const Vec3& a, double s) { return {a.x / s, a.y / s, a.z / s}; }
-inline Vec3& operator+=(Vec3& a, const Vec3& b) { return a = a + b; }
-inline Vec3& operator-=(Vec3& a, const Vec3& b) { return a = a - b; }
-inline Vec3& operator*=(Vec3& a, double s) { return a = a * s; }
-inline double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vec3 operator+(const Vec3& a, const Vec3& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Vec3 operator-(const Vec3& a, const Vec3& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Vec3 operator-(const Vec3& a) {
+  return {-a.x, -a.y, -a.z};
+}
+inline Vec3 operator*(const Vec3& a, double s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
+inline Vec3 operator*(double s, const Vec3& a) {
+  return a * s;
+}
+inline Vec3 operator/(const Vec3& a, double s) {
+  return {a.x / s, a.y / s, a.z / s};
+}
+inline Vec3& operator+=(Vec3& a, const Vec3& b) {
+  return a = a + b;
+}
+inline Vec3& operator-=(Vec3& a, const Vec3& b) {
+  return a = a - b;
+}
+inline Vec3& operator*=(Vec3& a, double s) {
+  return a = a * s;
+}
+inline double dot(const Vec3& a, const Vec3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 inline Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
-inline double distance(const Vec3& a, const Vec3& b) { return length(a - b); }
+inline double length(const Vec3& a) {
+  return std::sqrt(dot(a, a));
+}
+inline double distance(const Vec3& a, const Vec3& b) {
+  return length(a - b);
+}
 /// a / |a|; the zero vector for the zero vector.
 inline Vec3 normalized(const Vec3& a) {
   const double l = length(a);
   return l > 0 ? a / l : Vec3{};
 }
-inline bool is_finite(const Vec3& a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
+inline bool is_finite(const Vec3& a) {
+  return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
 /// A unit vector perpendicular to the unit vector n, chosen the same way every time.
 inline Vec3 any_perpendicular(const Vec3& n) {
   const Vec3 axis = std::abs(n.x) <= std::abs(n.y) && std::abs(n.x) <= std::abs(n.z) ? Vec3{1, 0, 0}
-                    : std::abs(n.y) <= std::abs(n.z)                                  ? Vec3{0, 1, 0}
-                                                                                      : Vec3{0, 0, 1};
+                    : std::abs(n.y) <= std::abs(n.z)                                 ? Vec3{0, 1, 0}
+                                                                                     : Vec3{0, 0, 1};
   return normalized(cross(n, axis));
 }
 
@@ -69,12 +115,22 @@ struct Mat3 {
   Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
   friend bool operator==(const Mat3&, const Mat3&) = default;
 };
-inline Vec3 operator*(const Mat3& m, const Vec3& v) { return m.x * v.x + m.y * v.y + m.z * v.z; }
-inline Mat3 operator*(const Mat3& a, const Mat3& b) { return {a * b.x, a * b.y, a * b.z}; }
-inline Vec3 transpose_times(const Mat3& m, const Vec3& v) { return {dot(m.x, v), dot(m.y, v), dot(m.z, v)}; }
-inline double determinant(const Mat3& m) { return dot(m.x, cross(m.y, m.z)); }
+inline Vec3 operator*(const Mat3& m, const Vec3& v) {
+  return m.x * v.x + m.y * v.y + m.z * v.z;
+}
+inline Mat3 operator*(const Mat3& a, const Mat3& b) {
+  return {a * b.x, a * b.y, a * b.z};
+}
+inline Vec3 transpose_times(const Mat3& m, const Vec3& v) {
+  return {dot(m.x, v), dot(m.y, v), dot(m.z, v)};
+}
+inline double determinant(const Mat3& m) {
+  return dot(m.x, cross(m.y, m.z));
+}
 /// The inverse transposed, times the determinant: takes normals along with points.
-inline Mat3 cofactor(const Mat3& m) { return {cross(m.y, m.z), cross(m.z, m.x), cross(m.x, m.y)}; }
+inline Mat3 cofactor(const Mat3& m) {
+  return {cross(m.y, m.z), cross(m.z, m.x), cross(m.x, m.y)};
+}
 inline Mat3 transpose(const Mat3& m) {
   return {{m.x.x, m.y.x, m.z.x}, {m.x.y, m.y.y, m.z.y}, {m.x.z, m.y.z, m.z.z}};
 }
@@ -90,8 +146,12 @@ struct Affine3 {
   Vec3 translation;
   friend bool operator==(const Affine3&, const Affine3&) = default;
 };
-inline Vec3 transform_point(const Affine3& t, const Vec3& p) { return t.linear * p + t.translation; }
-inline Vec3 transform_vector(const Affine3& t, const Vec3& v) { return t.linear * v; }
+inline Vec3 transform_point(const Affine3& t, const Vec3& p) {
+  return t.linear * p + t.translation;
+}
+inline Vec3 transform_vector(const Affine3& t, const Vec3& v) {
+  return t.linear * v;
+}
 /// First b, then a.
 inline Affine3 operator*(const Affine3& a, const Affine3& b) {
   return {a.linear * b.linear, transform_point(a, b.translation)};

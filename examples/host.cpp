@@ -1,10 +1,10 @@
-// A host that owns its OpenGL context, camera and depth buffer, draws something of its own, and lets the library draw a CAD model into
-// the same picture: each hides the other where it is nearer.
+// A host that owns its OpenGL context, camera and depth buffer, draws something of its own, and lets the
+// library draw a CAD model into the same picture: each hides the other where it is nearer.
 //
 //   host MODEL OUT.png [egl|osmesa]
 //
-// A program with a window does the same with the context that its toolkit made: all that the library needs is that context's
-// getProcAddress, the two camera matrices and the viewport.
+// A program with a window does the same with the context that its toolkit made: all that the library needs is
+// that context's getProcAddress, the two camera matrices and the viewport.
 #include <GL/glcorearb.h>
 
 #include <cmath>
@@ -30,16 +30,21 @@ struct HostGl {
     const auto load = [&](auto& function, const char* name) {
       function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(get(name));
     };
-    load(create_shader, "glCreateShader"), load(shader_source, "glShaderSource"), load(compile_shader, "glCompileShader");
-    load(create_program, "glCreateProgram"), load(attach_shader, "glAttachShader"), load(link_program, "glLinkProgram");
-    load(use_program, "glUseProgram"), load(get_uniform, "glGetUniformLocation"), load(uniform_matrix, "glUniformMatrix4fv");
+    load(create_shader, "glCreateShader"), load(shader_source, "glShaderSource"),
+        load(compile_shader, "glCompileShader");
+    load(create_program, "glCreateProgram"), load(attach_shader, "glAttachShader"),
+        load(link_program, "glLinkProgram");
+    load(use_program, "glUseProgram"), load(get_uniform, "glGetUniformLocation"),
+        load(uniform_matrix, "glUniformMatrix4fv");
     load(gen_framebuffers, "glGenFramebuffers"), load(bind_framebuffer, "glBindFramebuffer");
     load(gen_renderbuffers, "glGenRenderbuffers"), load(bind_renderbuffer, "glBindRenderbuffer");
-    load(renderbuffer_storage, "glRenderbufferStorage"), load(framebuffer_renderbuffer, "glFramebufferRenderbuffer");
+    load(renderbuffer_storage, "glRenderbufferStorage"),
+        load(framebuffer_renderbuffer, "glFramebufferRenderbuffer");
     load(gen_buffers, "glGenBuffers"), load(bind_buffer, "glBindBuffer"), load(buffer_data, "glBufferData");
     load(gen_arrays, "glGenVertexArrays"), load(bind_array, "glBindVertexArray");
     load(attribute, "glVertexAttribPointer"), load(enable_attribute, "glEnableVertexAttribArray");
-    load(enable, "glEnable"), load(viewport, "glViewport"), load(clear_color, "glClearColor"), load(clear, "glClear");
+    load(enable, "glEnable"), load(viewport, "glViewport"), load(clear_color, "glClearColor"),
+        load(clear, "glClear");
     load(draw_arrays, "glDrawArrays"), load(read_pixels, "glReadPixels");
   }
   PFNGLCREATESHADERPROC create_shader;
@@ -92,10 +97,26 @@ Matrix look_at(const dupin::Vec3& eye, const dupin::Vec3& target) {
 
 Matrix perspective(double fov_degrees, double aspect, double near, double far) {
   const double f = 1 / std::tan(fov_degrees * kPi / 360);
-  return {f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, 2 * far * near / (near - far), 0};
+  return {f / aspect,
+          0,
+          0,
+          0,
+          0,
+          f,
+          0,
+          0,
+          0,
+          0,
+          (far + near) / (near - far),
+          -1,
+          0,
+          0,
+          2 * far * near / (near - far),
+          0};
 }
 
-/// Triangles with normals: a checkered ground below the box, and a ring around it that the model and it hide each other with.
+/// Triangles with normals: a checkered ground below the box, and a ring around it that the model and it hide
+/// each other with.
 std::vector<float> own_scene(const dupin::Box3& box) {
   std::vector<float> v;
   const dupin::Vec3 c = box.center();
@@ -107,17 +128,20 @@ std::vector<float> own_scene(const dupin::Box3& box) {
     for (int j = -6; j < 6; ++j) {
       if ((i + j) & 1) continue;
       const double s = size / 6, x = c.x + i * s, y = c.y + j * s;
-      const dupin::Vec3 corners[] = {{x, y, ground}, {x + s, y, ground}, {x + s, y + s, ground}, {x, y + s, ground}};
+      const dupin::Vec3 corners[] = {
+          {x, y, ground}, {x + s, y, ground}, {x + s, y + s, ground}, {x, y + s, ground}};
       for (const int k : {0, 1, 2, 0, 2, 3}) vertex(corners[k], {0, 0, 1});
     }
   const double large = 0.5 * size, small = 0.035 * size;
   const auto ring = [&](int i, int j) {
     const double a = i * 2 * kPi / 96, b = j * 2 * kPi / 24;
-    const dupin::Vec3 out{std::cos(a), 0.35 * std::cos(a), std::sin(a)}, n = normalized(out) * std::cos(b) + dupin::Vec3{-0.33, 0.94, 0} * std::sin(b);
+    const dupin::Vec3 out{std::cos(a), 0.35 * std::cos(a), std::sin(a)},
+        n = normalized(out) * std::cos(b) + dupin::Vec3{-0.33, 0.94, 0} * std::sin(b);
     vertex(c + out * large + n * small, n);
   };
   for (int i = 0; i < 96; ++i)
-    for (int j = 0; j < 24; ++j) ring(i, j), ring(i + 1, j), ring(i + 1, j + 1), ring(i, j), ring(i + 1, j + 1), ring(i, j + 1);
+    for (int j = 0; j < 24; ++j)
+      ring(i, j), ring(i + 1, j), ring(i + 1, j + 1), ring(i, j), ring(i + 1, j + 1), ring(i, j + 1);
   return v;
 }
 
@@ -149,7 +173,9 @@ class Host {
     std::vector<std::uint8_t> rows(3 * kWidth * kHeight);
     gl_.read_pixels(0, 0, kWidth, kHeight, GL_RGB, GL_UNSIGNED_BYTE, rows.data());
     dupin::Image8 image{kWidth, kHeight, 3, {}};
-    for (int y = kHeight - 1; y >= 0; --y) image.values.insert(image.values.end(), rows.begin() + 3 * kWidth * y, rows.begin() + 3 * kWidth * (y + 1));
+    for (int y = kHeight - 1; y >= 0; --y)
+      image.values.insert(image.values.end(), rows.begin() + 3 * kWidth * y,
+                          rows.begin() + 3 * kWidth * (y + 1));
     return image;
   }
 
@@ -159,7 +185,8 @@ class Host {
     gl_.gen_framebuffers(1, &framebuffer);
     gl_.bind_framebuffer(GL_FRAMEBUFFER, framebuffer);
     gl_.gen_renderbuffers(2, buffers);
-    const GLenum formats[] = {GL_RGBA8, GL_DEPTH_COMPONENT24}, attachments[] = {GL_COLOR_ATTACHMENT0, GL_DEPTH_ATTACHMENT};
+    const GLenum formats[] = {GL_RGBA8, GL_DEPTH_COMPONENT24},
+                 attachments[] = {GL_COLOR_ATTACHMENT0, GL_DEPTH_ATTACHMENT};
     for (int i = 0; i < 2; ++i) {
       gl_.bind_renderbuffer(GL_RENDERBUFFER, buffers[i]);
       gl_.renderbuffer_storage(GL_RENDERBUFFER, formats[i], kWidth, kHeight);
@@ -168,14 +195,17 @@ class Host {
   }
   void make_program() {
     const char* vertex =
-        "#version 330 core\nlayout(location=0) in vec3 p; layout(location=1) in vec3 n; uniform mat4 to_clip; out vec3 normal;\n"
+        "#version 330 core\nlayout(location=0) in vec3 p; layout(location=1) in vec3 n; uniform mat4 "
+        "to_clip; out vec3 normal;\n"
         "void main() { normal = n; gl_Position = to_clip * vec4(p, 1); }\n";
     const char* fragment =
         "#version 330 core\nin vec3 normal; out vec4 color;\n"
-        "void main() { float d = 0.35 + 0.65 * abs(dot(normalize(normal), normalize(vec3(0.3, -0.5, 0.8))));\n"
+        "void main() { float d = 0.35 + 0.65 * abs(dot(normalize(normal), normalize(vec3(0.3, -0.5, "
+        "0.8))));\n"
         "  color = vec4(d * vec3(0.80, 0.45, 0.20), 1); }\n";
     program_ = gl_.create_program();
-    const std::pair<GLenum, const char*> stages[] = {{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}};
+    const std::pair<GLenum, const char*> stages[] = {{GL_VERTEX_SHADER, vertex},
+                                                     {GL_FRAGMENT_SHADER, fragment}};
     for (const auto& [stage, text] : stages) {
       const GLuint shader = gl_.create_shader(stage);
       gl_.shader_source(shader, 1, &text, nullptr);
@@ -191,7 +221,8 @@ class Host {
     gl_.bind_array(array_);
     gl_.gen_buffers(1, &buffer);
     gl_.bind_buffer(GL_ARRAY_BUFFER, buffer);
-    gl_.buffer_data(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(float)), vertices.data(), GL_STATIC_DRAW);
+    gl_.buffer_data(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(float)),
+                    vertices.data(), GL_STATIC_DRAW);
     for (const GLuint i : {0U, 1U}) {
       gl_.attribute(i, 3, GL_FLOAT, GL_FALSE, 24, reinterpret_cast<const void*>(std::size_t{12} * i));
       gl_.enable_attribute(i);

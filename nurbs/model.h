@@ -58,7 +58,8 @@ struct RecognizedSurface {
 
 struct Face {
   std::uint32_t surface = 0;
-  /// Set by `recognize_faces`. Parameters, trims and `uv_box` stay those of `surface`. Shared between copies: never changed.
+  /// Set by `recognize_faces`. Parameters, trims and `uv_box` stay those of `surface`. Shared between copies:
+  /// never changed.
   std::shared_ptr<const RecognizedSurface> recognized;
   bool reversed = false;    ///< the outward normal is -(Su × Sv)
   std::vector<Loop> loops;  ///< empty: bounded by `uv_box` alone (a whole sphere or torus, a natural patch)

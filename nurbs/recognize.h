@@ -40,8 +40,8 @@ struct Recognized {
 std::optional<Recognized> recognize(const Surface& surface, const Box2& uv_box, double tolerance);
 
 struct Model;
-/// Sets Face::recognized of every face whose surface is recognised within kRecognitionTolerance times the face's extent, in parallel
-/// over faces. Returns how many were.
+/// Sets Face::recognized of every face whose surface is recognised within kRecognitionTolerance times the
+/// face's extent, in parallel over faces. Returns how many were.
 int recognize_faces(Model& model);
 
 }  // namespace dupin

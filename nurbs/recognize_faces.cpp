@@ -28,9 +28,11 @@ int recognize_faces(Model& model) {
       Face& face = part.faces[i];
       const Surface& surface = part.surfaces[face.surface];
       if (is_quadric(surface) || std::holds_alternative<Torus>(surface.geometry)) return;
-      const auto found = recognize(surface, face.uv_box, kRecognitionTolerance * extent(surface, face.uv_box));
+      const auto found =
+          recognize(surface, face.uv_box, kRecognitionTolerance * extent(surface, face.uv_box));
       if (!found) return;
-      face.recognized = std::make_shared<RecognizedSurface>(RecognizedSurface{found->surface, found->deviation, found->normal_deviation});
+      face.recognized = std::make_shared<RecognizedSurface>(
+          RecognizedSurface{found->surface, found->deviation, found->normal_deviation});
       ++count;
     });
   return count;

@@ -1,8 +1,8 @@
 #include "draw_list.h"
 
 #include <bit>
-#include <map>
 #include <limits>
+#include <map>
 
 namespace dupin {
 namespace {
@@ -11,11 +11,13 @@ namespace {
 /// farthest depth is not drawn.
 constexpr double kNearestOfFar = 1e-6;
 
-/// Curved DPs nearer than this many radii of their bounding sphere are drawn by their prisms: nothing of the others is near the eye.
+/// Curved DPs nearer than this many radii of their bounding sphere are drawn by their prisms: nothing of the
+/// others is near the eye.
 constexpr double kProxyDistance = 1.2;
 
-/// Planar DPs with pieces are drawn by rectangles of their covers whose cells are about this large: smaller ones waste more pixels
-/// around them than they spare, and edges, half their width and half a pixel, must not reach over a cell's margin.
+/// Planar DPs with pieces are drawn by rectangles of their covers whose cells are about this large: smaller
+/// ones waste more pixels around them than they spare, and edges, half their width and half a pixel, must not
+/// reach over a cell's margin.
 constexpr double kCellPx = 16;
 
 struct Plane3 {
@@ -122,7 +124,7 @@ struct PartCamera {
   std::array<Plane3, 4> sides;
   Plane3 depth;                ///< its value is the depth
   std::array<Plane3, 2> rows;  ///< their values are clip coordinates X and Y
-  Vec3 eye;      ///< or, in parallel, the direction towards the viewer
+  Vec3 eye;                    ///< or, in parallel, the direction towards the viewer
   bool perspective;
   bool cull_turned_away;
 };
@@ -170,7 +172,8 @@ class Footprints {
     for (std::size_t k = 0; k < 2; ++k) {
       const Plane3& row = camera.rows[k];
       // |(X + δX)/(w + δw) − X/w| for changes of at most radius·|row| and δw.
-      const double at = (dot(row.n, center) + row.d) / w, reach = (radius * length(row.n) + std::abs(at) * dw) / (w - dw);
+      const double at = (dot(row.n, center) + row.d) / w,
+                   reach = (radius * length(row.n) + std::abs(at) * dw) / (w - dw);
       const int size = k == 0 ? view_.width : view_.height;
       ends[2 * k] = (at - reach + 1) * size / 2;
       ends[2 * k + 1] = (at + reach + 1) * size / 2;
@@ -181,9 +184,12 @@ class Footprints {
 
  private:
   void add_pixels(double x0, double x1, double y0, double y1) {
-    const auto whole = [](double v, int limit) { return static_cast<int>(std::clamp(v, 0.0, static_cast<double>(limit))); };
+    const auto whole = [](double v, int limit) {
+      return static_cast<int>(std::clamp(v, 0.0, static_cast<double>(limit)));
+    };
     const int left = whole(x0, view_.width), right = whole(x1 + 1, view_.width);
-    const int first = whole(y0, view_.height) / kBandRows, last = std::min(whole(y1 + 1, view_.height), view_.height - 1) / kBandRows;
+    const int first = whole(y0, view_.height) / kBandRows,
+              last = std::min(whole(y1 + 1, view_.height), view_.height - 1) / kBandRows;
     for (int b = first; b <= last; ++b) {
       auto& band = bands_[static_cast<std::size_t>(b)];
       band = {std::min(band[0], left), std::max(band[1], right)};
@@ -228,11 +234,13 @@ std::uint64_t sort_key(std::uint32_t kind, float depth) {
   // Floats in order as unsigned integers: the sign bit turned for positive ones, all bits for negative ones.
   const auto bits = std::bit_cast<std::uint32_t>(depth);
   const std::uint32_t ordered = bits & 0x80000000U ? ~bits : bits | 0x80000000U;
-  return static_cast<std::uint64_t>(kind & kCurvedKind) << 48 | static_cast<std::uint64_t>(kind) << 32 | ordered;
+  return static_cast<std::uint64_t>(kind & kCurvedKind) << 48 | static_cast<std::uint64_t>(kind) << 32 |
+         ordered;
 }
 
-void add_dps(const SceneInstance& instance, std::uint32_t index, const ScenePart& part, const PartCamera& camera,
-             Footprints& footprints, bool flats, std::vector<Candidate>& candidates) {
+void add_dps(const SceneInstance& instance, std::uint32_t index, const ScenePart& part,
+             const PartCamera& camera, Footprints& footprints, bool flats,
+             std::vector<Candidate>& candidates) {
   const double depth_scale = length(camera.depth.n);
   for (std::size_t i = 0; i < part.dps.size(); ++i) {
     const DpBounds& dp = part.dps[i];
@@ -244,17 +252,25 @@ void add_dps(const SceneInstance& instance, std::uint32_t index, const ScenePart
       if (camera.cull_turned_away) kind |= kFrontOnlyKind;
       if (camera.perspective && depth < kProxyDistance * dp.radius * depth_scale) kind |= kPrismKind;
     }
-    const std::uint32_t color = instance.face_colors.empty() ? instance.color : instance.face_colors[dp.color_face];
-    candidates.push_back({sort_key(kind, static_cast<float>(depth)),
-                          {dp.record, index, instance.first_primitive + static_cast<std::uint32_t>(i) + 1, color}, &dp, radius_px});
+    const std::uint32_t color =
+        instance.face_colors.empty() ? instance.color : instance.face_colors[dp.color_face];
+    candidates.push_back(
+        {sort_key(kind, static_cast<float>(depth)),
+         {dp.record, index, instance.first_primitive + static_cast<std::uint32_t>(i) + 1, color},
+         &dp,
+         radius_px});
   }
 }
 
 /// Rectangles of planar DPs, by kind.
 using Rectangles = std::map<std::uint32_t, std::vector<Texel>>;
 
-std::uint32_t word(double v) { return std::bit_cast<std::uint32_t>(static_cast<float>(v)); }
-Texel texel_of(double x, double y, double z, double w) { return {word(x), word(y), word(z), word(w)}; }
+std::uint32_t word(double v) {
+  return std::bit_cast<std::uint32_t>(static_cast<float>(v));
+}
+Texel texel_of(double x, double y, double z, double w) {
+  return {word(x), word(y), word(z), word(w)};
+}
 
 void add_rectangle(const Box2& b, std::size_t slot, std::vector<Texel>& texels) {
   texels.push_back(texel_of(b.lo.x, b.lo.y, b.hi.x, b.hi.y));
@@ -262,7 +278,8 @@ void add_rectangle(const Box2& b, std::size_t slot, std::vector<Texel>& texels) 
 }
 
 /// With the pieces that reach into it, features first.
-void add_rectangle(const BoundaryRectangle& r, std::size_t slot, const FlatPieces& room, std::vector<Texel>& texels) {
+void add_rectangle(const BoundaryRectangle& r, std::size_t slot, const FlatPieces& room,
+                   std::vector<Texel>& texels) {
   add_rectangle(r.box, slot, texels);
   const std::size_t head = texels.size() - 1;
   std::uint32_t features[2] = {0, 0};
@@ -281,9 +298,10 @@ void add_rectangle(const BoundaryRectangle& r, std::size_t slot, const FlatPiece
       features[1] += feature;
     }
   texels.resize(head + 1 + room.lines + 2 * room.arcs);
-  texels[head] = {static_cast<std::uint32_t>(slot) | (r.reference_inside ? 0x80000000U : 0U),
-                  static_cast<std::uint32_t>(r.lines.size() | r.arcs.size() << 8) | features[0] << 16 | features[1] << 24,
-                  word(r.reference.x), word(r.reference.y)};
+  texels[head] = {
+      static_cast<std::uint32_t>(slot) | (r.reference_inside ? 0x80000000U : 0U),
+      static_cast<std::uint32_t>(r.lines.size() | r.arcs.size() << 8) | features[0] << 16 | features[1] << 24,
+      word(r.reference.x), word(r.reference.y)};
 }
 
 /// The kind of planar.vert that has room for the rectangle's pieces, or that of the whole DP.
@@ -295,7 +313,8 @@ std::uint32_t rectangle_kind(const BoundaryRectangle& r, std::uint32_t whole, bo
   return whole;
 }
 
-void add_planar(const Candidate& c, std::uint32_t kind, std::size_t slot, bool flats, Rectangles& rectangles) {
+void add_planar(const Candidate& c, std::uint32_t kind, std::size_t slot, bool flats,
+                Rectangles& rectangles) {
   std::size_t level = std::size(kCoverResolutions);
   while (level > 0 && 2 * c.radius_px < kCellPx * 1.4 * kCoverResolutions[level - 1]) --level;
   const PlanarCover& cover = (*c.dp->covers)[level > 0 ? level - 1 : 0];
@@ -381,7 +400,8 @@ void build_draw_list(const Scene::Impl& scene, const ViewRays& view, bool flats,
     }
     add_dps(instance, index, part, camera, footprints, flats, candidates);
   }
-  // Equal keys keep the model's order, by the primitive's number: the same list whatever the sorting algorithm.
+  // Equal keys keep the model's order, by the primitive's number: the same list whatever the sorting
+  // algorithm.
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     return a.key != b.key ? a.key < b.key : a.item.primitive < b.item.primitive;
   });

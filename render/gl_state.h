@@ -24,7 +24,8 @@ class GlStateGuard {
   std::array<double, 2> depth_range() const { return depth_range_; }
   bool clip_zero_to_one() const { return clip_depth_ == GL_ZERO_TO_ONE; }
   bool srgb_conversion() const { return enabled_[kSrgb]; }
-  /// Depth test, scissor, color mask and sRGB conversion as the host has them, and writing to its first color buffer alone.
+  /// Depth test, scissor, color mask and sRGB conversion as the host has them, and writing to its first color
+  /// buffer alone.
   void use_host_output() const;
 
  private:

@@ -12,11 +12,12 @@
 //   then, if kPieces:
 //          counts: lines | arcs << 12 | ellipses << 24; the same of those that are feature edges; reference
 //          x, y
-//   then the planes (n, d), lines (p0, p1), arcs (p0, p1; p2, 4w², 0) and ellipses (center, mxx, mxy; myy, 0, 0, 0), each kind with its
-//   feature edges first. All but the planes are relative to the reference; an arc's triangle p0 p1 p2 is counter-clockwise.
+//   then the planes (n, d), lines (p0, p1), arcs (p0, p1; p2, 4w², 0) and ellipses (center, mxx, mxy; myy, 0,
+//   0, 0), each kind with its feature edges first. All but the planes are relative to the reference; an arc's
+//   triangle p0 p1 p2 is counter-clockwise.
 //
-// meta: flags in bits 0–4 and 14, the quaternion's largest part in bits 6–7, feature_sides in bits 8–13, planes in
-// bits 16–23 and those of them that are feature edges in bits 24–31.
+// meta: flags in bits 0–4 and 14, the quaternion's largest part in bits 6–7, feature_sides in bits 8–13,
+// planes in bits 16–23 and those of them that are feature edges in bits 24–31.
 #ifndef DUPIN_RENDER_GPU_ENCODE_H
 #define DUPIN_RENDER_GPU_ENCODE_H
 
@@ -31,8 +32,8 @@ namespace dupin {
 
 using Texel = std::array<std::uint32_t, 4>;
 
-constexpr std::uint32_t kPlanar = 1, kFlipped = 2, kRectangle = 4, kPieces = 8,
-                        kReferenceInside = 16, kCubic = 1u << 14;  // meta's flags
+constexpr std::uint32_t kPlanar = 1, kFlipped = 2, kRectangle = 4, kPieces = 8, kReferenceInside = 16,
+                        kCubic = 1u << 14;  // meta's flags
 constexpr std::uint32_t kLargestPartShift = 6, kFeatureSidesShift = 8, kPlaneCountShift = 16,
                         kFeaturePlaneShift = 24;
 constexpr std::uint32_t kMaxPlanes = 255, kMaxLines = 4095, kMaxArcs = 4095, kMaxEllipses = 255;

@@ -1,12 +1,15 @@
-// Drawing into a host's framebuffer: a picture of our own, put there pixel by pixel against the host's depth buffer.
+// Drawing into a host's framebuffer: a picture of our own, put there pixel by pixel against the host's depth
+// buffer.
 #include "gl_state.h"
 #include "renderer_impl.h"
 
 namespace dupin {
 namespace {
 
-/// Window depth as a function of the depth along the view axis, x + y·depth + z/depth, for the host's projection and conventions.
-std::array<double, 3> host_depth_terms(const HostView& host, const ViewRays& view, const GlStateGuard& state) {
+/// Window depth as a function of the depth along the view axis, x + y·depth + z/depth, for the host's
+/// projection and conventions.
+std::array<double, 3> host_depth_terms(const HostView& host, const ViewRays& view,
+                                       const GlStateGuard& state) {
   const auto& p = host.projection;
   // With the host's z = −scale·depth, clip z is p10 z + p14 and clip w −z (or p15).
   std::array<double, 3> ndc;
@@ -26,21 +29,27 @@ bool converts_to_srgb(const Gl& gl, const GlStateGuard& state) {
   if (!state.srgb_conversion()) return false;
   GLint encoding = GL_LINEAR;
   const GLenum attachment = state.draw_framebuffer() ? GL_COLOR_ATTACHMENT0 : GL_BACK_LEFT;
-  gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment, GL_FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING, &encoding);
+  gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment,
+                                         GL_FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING, &encoding);
   return encoding == GL_SRGB;
 }
 
 }  // namespace
 
-Status Renderer::Impl::composite(const HostView& host, const ViewRays& view, const DrawOptions& options, const GlStateGuard& state) {
-  const auto name = program("composite", {{"screen.vert"}, {"composite.frag"}, {}, {}, {{"colors", kVerticesUnit}, {"depths", kIndicesUnit}}});
+Status Renderer::Impl::composite(const HostView& host, const ViewRays& view, const DrawOptions& options,
+                                 const GlStateGuard& state) {
+  const auto name = program(
+      "composite",
+      {{"screen.vert"}, {"composite.frag"}, {}, {}, {{"colors", kVerticesUnit}, {"depths", kIndicesUnit}}});
   if (!name) return name.status();
   const auto uniform = [&](const char* n) { return gl->GetUniformLocation(*name, n); };
   gl->BindFramebuffer(GL_DRAW_FRAMEBUFFER, state.draw_framebuffer());
   const auto terms = host_depth_terms(host, view, state);
   const auto [near, far] = state.depth_range();
-  gl->Uniform3f(uniform("host_depth"), static_cast<float>(terms[0]), static_cast<float>(terms[1]), static_cast<float>(terms[2]));
-  gl->Uniform2f(uniform("host_range"), static_cast<float>(std::min(near, far)), static_cast<float>(std::max(near, far)));
+  gl->Uniform3f(uniform("host_depth"), static_cast<float>(terms[0]), static_cast<float>(terms[1]),
+                static_cast<float>(terms[2]));
+  gl->Uniform2f(uniform("host_range"), static_cast<float>(std::min(near, far)),
+                static_cast<float>(std::max(near, far)));
   gl->Uniform3i(uniform("place"), host.viewport[0], host.viewport[1], host.viewport[3]);
   gl->Uniform1i(uniform("encode"), converts_to_srgb(*gl, state) ? 0 : 1);
   gl->Uniform1f(uniform("samples"), static_cast<float>(options.samples));

@@ -1,5 +1,6 @@
-// The footprint's box is cut into cells; those that nothing of the boundary reaches into are inside or outside as a whole. The largest
-// rectangles of inside cells are taken one after the other, and what is left is put together from rows of cells.
+// The footprint's box is cut into cells; those that nothing of the boundary reaches into are inside or
+// outside as a whole. The largest rectangles of inside cells are taken one after the other, and what is left
+// is put together from rows of cells.
 #include "planar_cover.h"
 
 #include <algorithm>
@@ -40,14 +41,17 @@ class Grid {
     return b;
   }
   Box2 cell(int i, int j) const { return box({i, j, i + 1, j + 1}, kMargin); }
-  /// A point of the cell that designs are not symmetric about: on an arc's chord the region's test may go either way.
+  /// A point of the cell that designs are not symmetric about: on an arc's chord the region's test may go
+  /// either way.
   Vec2 sample(int i, int j) const { return box_.lo + Vec2{(i + 0.4637) * step_.x, (j + 0.5281) * step_.y}; }
   /// The cells that overlap a box, margins included.
   Range overlapping(const Box2& reach) const {
-    const auto cell_of = [this](double v) { return static_cast<int>(std::clamp(std::floor(v), 0.0, n - 1.0)); };
+    const auto cell_of = [this](double v) {
+      return static_cast<int>(std::clamp(std::floor(v), 0.0, n - 1.0));
+    };
     const Vec2 lo = reach.lo - box_.lo, hi = reach.hi - box_.lo;
-    return {cell_of(lo.x / step_.x - kMargin), cell_of(lo.y / step_.y - kMargin), cell_of(hi.x / step_.x + kMargin) + 1,
-            cell_of(hi.y / step_.y + kMargin) + 1};
+    return {cell_of(lo.x / step_.x - kMargin), cell_of(lo.y / step_.y - kMargin),
+            cell_of(hi.x / step_.x + kMargin) + 1, cell_of(hi.y / step_.y + kMargin) + 1};
   }
 
  private:
@@ -55,8 +59,8 @@ class Grid {
   Vec2 step_;
 };
 
-/// A segment or a triangle against a box: apart if their boxes are, or if one of the sides' lines has the box on one side and no corner
-/// of the hull on that side.
+/// A segment or a triangle against a box: apart if their boxes are, or if one of the sides' lines has the box
+/// on one side and no corner of the hull on that side.
 template <std::size_t N>
 bool reaches(const std::array<Vec2, N>& hull, const Box2& box) {
   Box2 around;
@@ -67,12 +71,14 @@ bool reaches(const std::array<Vec2, N>& hull, const Box2& box) {
     const double center = cross(d, box.center() - a);
     const double reach = (std::abs(d.x) * box.size().y + std::abs(d.y) * box.size().x) / 2;
     if (std::abs(center) <= reach) continue;
-    if (std::all_of(hull.begin(), hull.end(), [&](Vec2 q) { return cross(d, q - a) * center <= 0; })) return false;
+    if (std::all_of(hull.begin(), hull.end(), [&](Vec2 q) { return cross(d, q - a) * center <= 0; }))
+      return false;
   }
   return true;
 }
 
-/// Calls f on the triangles of the arc's parts. Halving a rational quadratic with weights 1, w, 1 gives two with 1, w', 1.
+/// Calls f on the triangles of the arc's parts. Halving a rational quadratic with weights 1, w, 1 gives two
+/// with 1, w', 1.
 template <class F>
 void for_triangles(Vec2 p0, Vec2 p1, Vec2 p2, double w, int halvings, F&& f) {
   if (halvings == 0) return f(std::array<Vec2, 3>{p0, p1, p2});
@@ -84,14 +90,16 @@ void for_triangles(Vec2 p0, Vec2 p1, Vec2 p2, double w, int halvings, F&& f) {
 
 bool reaches(const ArcPiece& arc, const Box2& box) {
   bool any = false;
-  for_triangles(arc.p0, arc.p1, arc.p2, arc.w, kArcHalvings, [&](const std::array<Vec2, 3>& t) { any = any || reaches(t, box); });
+  for_triangles(arc.p0, arc.p1, arc.p2, arc.w, kArcHalvings,
+                [&](const std::array<Vec2, 3>& t) { any = any || reaches(t, box); });
   // The chord counts, too: which side of it a point lies on decides whether it is in the bulge.
   return any || reaches(std::array<Vec2, 2>{arc.p0, arc.p2}, box);
 }
 
 /// The ellipse |m (p − c)| = 1 as arcs; its own points are c + m⁻¹(cos θ, sin θ).
 void add_arcs(const EllipsePiece& e, std::vector<ArcPiece>& arcs) {
-  const double det = e.mxx * e.myy - e.mxy * e.mxy, step = 2 * 3.14159265358979323846 / kArcsOfEllipse, w = std::cos(step / 2);
+  const double det = e.mxx * e.myy - e.mxy * e.mxy, step = 2 * 3.14159265358979323846 / kArcsOfEllipse,
+               w = std::cos(step / 2);
   const auto point = [&](double angle, double radius) {
     const Vec2 q{std::cos(angle) * radius, std::sin(angle) * radius};
     return e.center + Vec2{e.myy * q.x - e.mxy * q.y, e.mxx * q.y - e.mxy * q.x} / det;
@@ -100,7 +108,8 @@ void add_arcs(const EllipsePiece& e, std::vector<ArcPiece>& arcs) {
   for (int k = 0; k < kArcsOfEllipse; ++k) ends[static_cast<std::size_t>(k)] = point(k * step, 1);
   ends.back() = ends.front();
   for (int k = 0; k < kArcsOfEllipse; ++k)
-    arcs.push_back({ends[static_cast<std::size_t>(k)], point((k + 0.5) * step, 1 / w), ends[static_cast<std::size_t>(k) + 1], w, e.feature});
+    arcs.push_back({ends[static_cast<std::size_t>(k)], point((k + 0.5) * step, 1 / w),
+                    ends[static_cast<std::size_t>(k) + 1], w, e.feature});
 }
 
 /// The boundary as lines and arcs alone.
@@ -112,7 +121,8 @@ Boundary boundary_of(const PartDps& part, const QuadricDp& dp) {
   Boundary b;
   b.lines.assign(part.lines.begin() + dp.first_line, part.lines.begin() + dp.first_line + dp.lines);
   b.arcs.assign(part.arcs.begin() + dp.first_arc, part.arcs.begin() + dp.first_arc + dp.arcs);
-  for (std::uint32_t i = dp.first_ellipse; i < dp.first_ellipse + dp.ellipses; ++i) add_arcs(part.ellipses[i], b.arcs);
+  for (std::uint32_t i = dp.first_ellipse; i < dp.first_ellipse + dp.ellipses; ++i)
+    add_arcs(part.ellipses[i], b.arcs);
   return b;
 }
 
@@ -127,7 +137,8 @@ void touch(const Grid& grid, Cells& cells, const std::array<Vec2, N>& hull) {
       if (reaches(hull, grid.cell(i, j))) cells(i, j) = kBoundary;
 }
 
-/// Which cells lie beyond one of the footprint's sides as a whole; what a side reaches into becomes a boundary cell.
+/// Which cells lie beyond one of the footprint's sides as a whole; what a side reaches into becomes a
+/// boundary cell.
 Cells beyond_footprint(const QuadricDp& dp, const Grid& grid, Cells& cells) {
   Cells beyond(grid.n);
   for (std::size_t k = 0; k < 4; ++k) {
@@ -136,7 +147,8 @@ Cells beyond_footprint(const QuadricDp& dp, const Grid& grid, Cells& cells) {
     for (int j = 0; j < grid.n; ++j)
       for (int i = 0; i < grid.n; ++i) {
         const Box2 cell = grid.cell(i, j);
-        const double g = cross(d, cell.center() - a), reach = (std::abs(d.x) * cell.size().y + std::abs(d.y) * cell.size().x) / 2;
+        const double g = cross(d, cell.center() - a),
+                     reach = (std::abs(d.x) * cell.size().y + std::abs(d.y) * cell.size().x) / 2;
         if (g < -reach) beyond(i, j) = kBoundary;
         if (g < reach) cells(i, j) = kBoundary;
       }
@@ -149,7 +161,8 @@ Cells classify(const PartDps& part, const QuadricDp& dp, const Boundary& boundar
   const Cells beyond = beyond_footprint(dp, grid, cells);
   for (const LinePiece& l : boundary.lines) touch(grid, cells, std::array<Vec2, 2>{l.p0, l.p1});
   for (const ArcPiece& a : boundary.arcs)
-    for_triangles(a.p0, a.p1, a.p2, a.w, kArcHalvings, [&](const std::array<Vec2, 3>& t) { touch(grid, cells, t); });
+    for_triangles(a.p0, a.p1, a.p2, a.w, kArcHalvings,
+                  [&](const std::array<Vec2, 3>& t) { touch(grid, cells, t); });
   for (int j = 0; j < grid.n; ++j)
     for (int i = 0; i < grid.n; ++i) {
       Cell& cell = cells(i, j);
@@ -162,7 +175,8 @@ Cells classify(const PartDps& part, const QuadricDp& dp, const Boundary& boundar
   return cells;
 }
 
-/// Row by row, with how many inside cells stand on each column; every rectangle is tried by its top row's ends.
+/// Row by row, with how many inside cells stand on each column; every rectangle is tried by its top row's
+/// ends.
 Range largest(const Cells& cells) {
   Range best;
   std::vector<int> height(static_cast<std::size_t>(cells.n), 0);
@@ -197,7 +211,8 @@ std::vector<Range> rows_of(const Cells& cells) {
       }
     }
     for (const Range& before : open) {
-      const auto same = std::find_if(runs.begin(), runs.end(), [&](const Range& r) { return r.i0 == before.i0 && r.i1 == before.i1; });
+      const auto same = std::find_if(runs.begin(), runs.end(),
+                                     [&](const Range& r) { return r.i0 == before.i0 && r.i1 == before.i1; });
       if (same != runs.end()) {
         same->j0 = before.j0;
       } else {
@@ -218,11 +233,13 @@ double distance_to(Vec2 p, Vec2 a, Vec2 b) {
 bool in_bulge(const ArcPiece& arc, Vec2 p) {
   const double area = cross(arc.p1 - arc.p0, arc.p2 - arc.p0);
   if (area == 0) return false;
-  const double b0 = cross(arc.p1 - p, arc.p2 - p) / area, b2 = cross(arc.p0 - p, arc.p1 - p) / area, b1 = 1 - b0 - b2;
+  const double b0 = cross(arc.p1 - p, arc.p2 - p) / area, b2 = cross(arc.p0 - p, arc.p1 - p) / area,
+               b1 = 1 - b0 - b2;
   return b0 >= 0 && b2 >= 0 && b1 > 0 && b1 * b1 < 4 * arc.w * arc.w * b0 * b2;
 }
 
-/// Of a few points of the box the one that is farthest from every segment, chord and side of an arc's triangle.
+/// Of a few points of the box the one that is farthest from every segment, chord and side of an arc's
+/// triangle.
 Vec2 choose_reference(const BoundaryRectangle& r) {
   constexpr int kTries = 7;
   Vec2 best = r.box.center();
@@ -234,16 +251,17 @@ Vec2 choose_reference(const BoundaryRectangle& r) {
       for (const LinePiece& l : r.lines) nearest = std::min(nearest, distance_to(p, l.p0, l.p1));
       for (const ArcPiece& a : r.arcs) {
         nearest = std::min(nearest, distance_to(p, a.p0, a.p2));
-        for_triangles(a.p0, a.p1, a.p2, a.w, kArcHalvings,
-                      [&](const std::array<Vec2, 3>& t) { nearest = std::min(nearest, distance_to(p, t[0], t[2])); });
+        for_triangles(a.p0, a.p1, a.p2, a.w, kArcHalvings, [&](const std::array<Vec2, 3>& t) {
+          nearest = std::min(nearest, distance_to(p, t[0], t[2]));
+        });
       }
       if (nearest > best_distance) best = p, best_distance = nearest;
     }
   return best;
 }
 
-BoundaryRectangle boundary_rectangle(const PartDps& part, const QuadricDp& dp, const Boundary& boundary, const Grid& grid,
-                                     const Range& range) {
+BoundaryRectangle boundary_rectangle(const PartDps& part, const QuadricDp& dp, const Boundary& boundary,
+                                     const Grid& grid, const Range& range) {
   BoundaryRectangle r;
   r.box = grid.box(range, 0);
   // What is drawn of the rectangle is a little more, for edges and rounding.
@@ -281,7 +299,8 @@ PlanarCover planar_cover(const PartDps& part, const QuadricDp& dp, int resolutio
     for (int j = r.j0; j < r.j1; ++j)
       for (int i = r.i0; i < r.i1; ++i) cells(i, j) = kOutside;
   }
-  for (const Range& r : rows_of(cells)) cover.boundary.push_back(boundary_rectangle(part, dp, boundary, grid, r));
+  for (const Range& r : rows_of(cells))
+    cover.boundary.push_back(boundary_rectangle(part, dp, boundary, grid, r));
   return cover;
 }
 

@@ -1,5 +1,6 @@
-// Rectangles that a planar DP with boundary pieces is drawn by: those inside its region need no test, those along its boundary are
-// tested against the few pieces that reach into them, and what lies outside is not touched at all.
+// Rectangles that a planar DP with boundary pieces is drawn by: those inside its region need no test, those
+// along its boundary are tested against the few pieces that reach into them, and what lies outside is not
+// touched at all.
 #ifndef DUPIN_RENDER_PLANAR_COVER_H
 #define DUPIN_RENDER_PLANAR_COVER_H
 
@@ -12,14 +13,14 @@ namespace dupin {
 /// A rectangle with the part of the region's description that matters in it; ellipses have become arcs.
 struct BoundaryRectangle {
   Box2 box;
-  Vec2 reference;  ///< in the box, not near any of the pieces
+  Vec2 reference;                 ///< in the box, not near any of the pieces
   bool reference_inside = false;  ///< as QuadricDp's, for these pieces
   std::vector<LinePiece> lines;
   std::vector<ArcPiece> arcs;
 };
 
-/// Axis-parallel in the DP's (x, y), disjoint; together they cover the region. All points of `inside` are drawn, and those that
-/// are kCoverMargin cells away.
+/// Axis-parallel in the DP's (x, y), disjoint; together they cover the region. All points of `inside` are
+/// drawn, and those that are kCoverMargin cells away.
 struct PlanarCover {
   std::vector<Box2> inside;
   std::vector<BoundaryRectangle> boundary;

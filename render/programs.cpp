@@ -10,8 +10,8 @@ Result<GLuint> Renderer::Impl::program(const std::string& key, const ProgramText
     return found->second.name();
   }
   ProgramText full = text;
-  full.units = {{"heap", kHeapUnit}, {"instances", kInstancesUnit},         {"slots", kSlotsUnit},
-                {"ids", kIdsUnit},   {"vertices", kVerticesUnit},           {"indices", kIndicesUnit},
+  full.units = {{"heap", kHeapUnit}, {"instances", kInstancesUnit},   {"slots", kSlotsUnit},
+                {"ids", kIdsUnit},   {"vertices", kVerticesUnit},     {"indices", kIndicesUnit},
                 {"runs", kRunsUnit}, {"rectangles", kRectanglesUnit}, {"triangle_faces", kTriangleFacesUnit}};
   for (const auto& unit : text.units) full.units.push_back(unit);
   auto built = build_program(*gl, full);
@@ -35,7 +35,8 @@ void Renderer::Impl::set_view(GLuint name, const ViewRays& view) const {
   gl->Uniform2f(location("pixel"), static_cast<float>(2.0 / view.width),
                 static_cast<float>(2.0 / view.height));
   const auto& terms = list_.depth_terms;
-  gl->Uniform3f(location("depth_terms"), static_cast<float>(terms[0]), static_cast<float>(terms[1]), static_cast<float>(terms[2]));
+  gl->Uniform3f(location("depth_terms"), static_cast<float>(terms[0]), static_cast<float>(terms[1]),
+                static_cast<float>(terms[2]));
   gl->Uniform2f(location("axis_scale"), static_cast<float>(1 / view.sx), static_cast<float>(1 / view.sy));
   gl->Uniform2f(location("axis_offset"), static_cast<float>(view.ox), static_cast<float>(view.oy));
   const Vec3 back = -view.forward;

@@ -120,8 +120,10 @@ Result<std::unique_ptr<Scene>> Renderer::upload(const Model& model, const DpScen
   return std::make_unique<Scene>(std::move(scene));
 }
 
-/// Every sample's passes, the color picture holding their sum; a single sample goes to the screen picture at once where it can.
-Status Renderer::Impl::draw_samples(const Scene::Impl& scene, const ViewRays& view, const DrawOptions& options) {
+/// Every sample's passes, the color picture holding their sum; a single sample goes to the screen picture at
+/// once where it can.
+Status Renderer::Impl::draw_samples(const Scene::Impl& scene, const ViewRays& view,
+                                    const DrawOptions& options) {
   const bool floats = options.outputs & kColor, screen = options.outputs & kScreen;
   const float alpha = options.background ? options.background->a : 0;
   const bool at_once = screen && !floats && options.samples == 1 && (alpha == 0 || alpha == 1);
@@ -129,7 +131,8 @@ Status Renderer::Impl::draw_samples(const Scene::Impl& scene, const ViewRays& vi
   const unsigned color = at_once ? 1U << kScreenPicture : floats || screen ? 1U << kColorPicture : 0U;
   // Half floats hold the sum of a few samples as well as 8 bits can show it.
   const GLenum format = floats || options.samples > kMostHalfSamples ? GL_RGBA32F : GL_RGBA16F;
-  Status status = prepare_targets(view.width, view.height, others | color | (screen ? 1U << kScreenPicture : 0U), format);
+  Status status =
+      prepare_targets(view.width, view.height, others | color | (screen ? 1U << kScreenPicture : 0U), format);
   const bool together = options.samples == 1 || !color;
   for (int i = 0; i < options.samples && status.ok() && !together; ++i) {
     const Vec2 offset = sample_offset(i, options.samples);

@@ -79,7 +79,7 @@ struct Frame {
   int width = 0, height = 0;
   double pixel_constant = 0, pixel_per_depth = 0;  ///< see Image
   std::vector<float> color;                        ///< R G B A, linear, premultiplied by A
-  std::vector<std::uint8_t> screen;  ///< R G B A, sRGB, straight alpha
+  std::vector<std::uint8_t> screen;                ///< R G B A, sRGB, straight alpha
   std::vector<float> normal;                       ///< 3
   std::vector<float> depth;                        ///< 1
   std::vector<float> position;                     ///< 3

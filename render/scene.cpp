@@ -64,11 +64,13 @@ bool has_features(const PartDps& part, const QuadricDp& dp) {
       if (pieces[i].feature) return true;
     return false;
   };
-  return (dp.feature_sides & 63) || any(part.planes, dp.first_plane, dp.planes) || any(part.lines, dp.first_line, dp.lines) ||
-         any(part.arcs, dp.first_arc, dp.arcs) || any(part.ellipses, dp.first_ellipse, dp.ellipses);
+  return (dp.feature_sides & 63) || any(part.planes, dp.first_plane, dp.planes) ||
+         any(part.lines, dp.first_line, dp.lines) || any(part.arcs, dp.first_arc, dp.arcs) ||
+         any(part.ellipses, dp.first_ellipse, dp.ellipses);
 }
 
-/// Few of them, for curved DPs: every one is a program more. Feature edges, which free-form cells seldom have, share one.
+/// Few of them, for curved DPs: every one is a program more. Feature edges, which free-form cells seldom
+/// have, share one.
 std::uint32_t flat_kind(const QuadricDp& dp, bool features) {
   for (const std::uint32_t flat : {1U, 2U, 3U, 6U}) {
     const FlatPieces& room = kFlatPieces[flat - 1];
@@ -92,8 +94,8 @@ std::unique_ptr<std::array<PlanarCover, 3>> covers_of(const PartDps& part, const
 
 /// See draw_list.h.
 std::uint32_t dp_kind(const PartDps& part, const QuadricDp& dp) {
-  std::uint32_t kind = (dp.planes > 0) * kPlanesKind | (dp.lines > 0) * kLinesKind | (dp.arcs > 0) * kArcsKind |
-                       (dp.ellipses > 0) * kEllipsesKind;
+  std::uint32_t kind = (dp.planes > 0) * kPlanesKind | (dp.lines > 0) * kLinesKind |
+                       (dp.arcs > 0) * kArcsKind | (dp.ellipses > 0) * kEllipsesKind;
   // A region without pieces that is all outside: some kind must look at `reference_inside`.
   if (!dp.reference_inside && (kind & ~kPlanesKind) == 0) kind |= kLinesKind;
   if (dp.planar) return kind;

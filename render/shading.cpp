@@ -1,7 +1,8 @@
 // The second half of a frame: once a pixel, from the primitive's number to colors and numbers.
 //
-// Only pixels that show something are worked on: the picture-covering triangle is drawn between the depth of an empty pixel, 0, and
-// the least that anything drawn can have, and lets the depth test sort them out before the shader runs.
+// Only pixels that show something are worked on: the picture-covering triangle is drawn between the depth of
+// an empty pixel, 0, and the least that anything drawn can have, and lets the depth test sort them out before
+// the shader runs.
 #include <limits>
 
 #include "renderer_impl.h"
@@ -9,9 +10,9 @@
 namespace dupin {
 namespace {
 
-constexpr const char* kLocations[kPictures] = {"LOCATION_COLOR", "LOCATION_COLOR", "LOCATION_NORMAL_DEPTH",
-                                               "LOCATION_CURVATURE", "LOCATION_DIRECTION",
-                                               "LOCATION_NUMBERS"};
+constexpr const char* kLocations[kPictures] = {"LOCATION_COLOR",        "LOCATION_COLOR",
+                                               "LOCATION_NORMAL_DEPTH", "LOCATION_CURVATURE",
+                                               "LOCATION_DIRECTION",    "LOCATION_NUMBERS"};
 
 bool needs_curvature(Shading shading) {
   return shading == Shading::k1 || shading == Shading::k2 || shading == Shading::mean ||
@@ -45,7 +46,8 @@ struct Variant {
 };
 
 Variant shading_variant(unsigned pictures, const DrawOptions& options, bool mesh) {
-  const bool color = pictures & (1U << kColorPicture | 1U << kScreenPicture), curves = pictures & 1U << kCurvaturePicture;
+  const bool color = pictures & (1U << kColorPicture | 1U << kScreenPicture),
+             curves = pictures & 1U << kCurvaturePicture;
   const bool numbers = pictures & 1U << kNumbersPicture;
   Variant v;
   v.key = mesh ? "shade mesh" : "shade";
@@ -108,7 +110,8 @@ void Renderer::Impl::clear_pictures(const Pass& pass) {
     } else {
       const Color c = premultiplied_background(*pass.options);
       const float n = static_cast<float>(pass.samples), infinity = std::numeric_limits<float>::infinity();
-      const float color[4] = {n * c.r, n * c.g, n * c.b, n * c.a}, far[4] = {0, 0, 0, infinity}, zero[4] = {0, 0, 0, 0};
+      const float color[4] = {n * c.r, n * c.g, n * c.b, n * c.a}, far[4] = {0, 0, 0, infinity},
+                  zero[4] = {0, 0, 0, 0};
       gl->ClearBufferfv(GL_COLOR, buffer, i <= kColorPicture ? color : i == kNormalDepthPicture ? far : zero);
     }
     ++buffer;
@@ -139,7 +142,8 @@ Status Renderer::Impl::shade(const Pass& pass) {
 }
 
 Status Renderer::Impl::resolve(const ViewRays& view, int samples) {
-  const auto name = program("resolve", {{"screen.vert"}, {"resolve.frag"}, {}, {}, {{"colors", kVerticesUnit}}});
+  const auto name =
+      program("resolve", {{"screen.vert"}, {"resolve.frag"}, {}, {}, {{"colors", kVerticesUnit}}});
   if (!name) return name.status();
   set_view(*name, view);
   gl->Uniform1f(gl->GetUniformLocation(*name, "samples"), static_cast<float>(samples));

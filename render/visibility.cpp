@@ -12,9 +12,9 @@ constexpr const char* kSlotOutputs[] = {"slot0", "slot1", "slot2", "slot3", "slo
 ProgramText dp_program(std::uint32_t kind, bool edges) {
   ProgramText text;
   const bool curved = kind & kCurvedKind;
-  const std::pair<std::uint32_t, const char*> names[] = {{kPlanesKind, "PLANES"}, {kLinesKind, "LINES"}, {kArcsKind, "ARCS"},
-                                                         {kEllipsesKind, "ELLIPSES"}, {kPrismKind, "PRISM"},
-                                                         {kFrontOnlyKind, "FRONT_ONLY"}};
+  const std::pair<std::uint32_t, const char*> names[] = {
+      {kPlanesKind, "PLANES"},     {kLinesKind, "LINES"}, {kArcsKind, "ARCS"},
+      {kEllipsesKind, "ELLIPSES"}, {kPrismKind, "PRISM"}, {kFrontOnlyKind, "FRONT_ONLY"}};
   for (const auto& [bit, define] : names)
     if (kind & bit) text.defines.push_back(define);
   if (edges) text.defines.push_back("EDGES");
@@ -24,7 +24,8 @@ ProgramText dp_program(std::uint32_t kind, bool edges) {
     text.defines.push_back("FLAT_ARCS " + std::to_string(flat.arcs));
     text.defines.push_back("RECTANGLE_TEXELS " + std::to_string(rectangle_texels(kind)));
   }
-  if (kind & (kPlanesKind | kLinesKind | kArcsKind | kEllipsesKind | kFlatKind)) text.defines.push_back("PIECES");
+  if (kind & (kPlanesKind | kLinesKind | kArcsKind | kEllipsesKind | kFlatKind))
+    text.defines.push_back("PIECES");
   if (kind & kInsideKind) {
     text.vertex = {"proxy.glsl", "inside.vert"};
     text.fragment = {"id.frag"};
@@ -64,7 +65,8 @@ Status Renderer::Impl::fill_slots() {
   if (count == 0) return {};
   if (count > kMostSlots || count * 12 > static_cast<std::size_t>(max_texels))
     return {StatusCode::limit, "more primitives in view than this OpenGL context's texture buffers can hold"};
-  // Fresh storage every pass: a driver that rasterises later (llvmpipe) may still be reading the last pass's slots.
+  // Fresh storage every pass: a driver that rasterises later (llvmpipe) may still be reading the last pass's
+  // slots.
   slots_.assign(nullptr, count * kSlotBytes, GL_STREAM_COPY);
   ProgramText text{{"prepare.vert"}, {}, {}, {}, {}};
   text.feedback.assign(std::begin(kSlotOutputs), std::end(kSlotOutputs));
@@ -112,18 +114,22 @@ void Renderer::Impl::grow_indices(std::uint32_t dps) {
 
 Status Renderer::Impl::draw_dps(const Pass& pass) {
   for (const DrawGroup& group : list_.groups) {
-    const bool edges = pass.edges() && (group.curved() ? group.kind & kFeaturesKind : group.kind != kInsideKind);
+    const bool edges =
+        pass.edges() && (group.curved() ? group.kind & kFeaturesKind : group.kind != kInsideKind);
     const std::uint32_t kind = group.kind & ~kFeaturesKind;
-    const auto name = program((edges ? "dp with edges " : "dp ") + std::to_string(kind), dp_program(kind, edges));
+    const auto name =
+        program((edges ? "dp with edges " : "dp ") + std::to_string(kind), dp_program(kind, edges));
     if (!name) return name.status();
     set_view(*name, pass.view);
-    gl->Uniform1f(gl->GetUniformLocation(*name, "edge_half_width"), static_cast<float>(pass.options->edge_width_px / 2));
+    gl->Uniform1f(gl->GetUniformLocation(*name, "edge_half_width"),
+                  static_cast<float>(pass.options->edge_width_px / 2));
     gl->Uniform1i(gl->GetUniformLocation(*name, "first"), static_cast<GLint>(group.first));
     grow_indices(group.count);
     const bool prism = group.kind & kPrismKind;
     gl->BindVertexArray(prism ? prism_array_.name() : quad_array_.name());
     if (prism) gl->Enable(GL_CULL_FACE);
-    gl->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(group.count * (prism ? 36 : 6)), GL_UNSIGNED_INT, nullptr);
+    gl->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(group.count * (prism ? 36 : 6)), GL_UNSIGNED_INT,
+                     nullptr);
     gl->Disable(GL_CULL_FACE);
   }
   return {};

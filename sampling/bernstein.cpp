@@ -36,8 +36,8 @@ std::span<const double> binomials(int n) {
 namespace {
 
 /// to[k] += s · from[k]; one operation an element, so that every clone gives the same bits.
-__attribute__((target_clones("avx2", "default"))) void add_rows(const double* a, int a_count, const double* rows, int length,
-                                                               double* to) {
+__attribute__((target_clones("avx2", "default"))) void add_rows(const double* a, int a_count,
+                                                                const double* rows, int length, double* to) {
   for (int i = 0; i < a_count; ++i) {
     const double s = a[i];
     for (int k = 0; k < length; ++k) to[i + k] += s * rows[k];
@@ -49,8 +49,8 @@ constexpr int kMaxPadded = 1024;
 
 }  // namespace
 
-// With b's rows padded to the product's width a product of two nets is one of two long vectors (Kronecker's substitution): the inner
-// loop runs over all of b at once.
+// With b's rows padded to the product's width a product of two nets is one of two long vectors (Kronecker's
+// substitution): the inner loop runs over all of b at once.
 void add_product(const Net& a, const Net& b, double factor, Net& out) {
   const int width = out.q + 1, length = b.p * width + b.q + 1;
   double padded[kMaxPadded];
@@ -58,7 +58,8 @@ void add_product(const Net& a, const Net& b, double factor, Net& out) {
   std::fill(padded, padded + length, 0.0);
   for (int k = 0; k <= b.p; ++k)
     for (int l = 0; l <= b.q; ++l) padded[k * width + l] = factor * b.at(k, l);
-  for (int i = 0; i <= a.p; ++i) add_rows(a.c.data() + i * (a.q + 1), a.q + 1, padded, length, out.c.data() + i * width);
+  for (int i = 0; i <= a.p; ++i)
+    add_rows(a.c.data() + i * (a.q + 1), a.q + 1, padded, length, out.c.data() + i * width);
 }
 
 void multiply(const Net& a, const Net& b, Net& out) {
@@ -92,7 +93,9 @@ Range range(const Net& a) {
   return r;
 }
 
-double magnitude(const Net& a) { return range(a).magnitude(); }
+double magnitude(const Net& a) {
+  return range(a).magnitude();
+}
 
 // s·Σ d_i C(p−1,i) s^i(1−s)^(p−1−i): entry i+1 of the degree p net is d_i C(p−1,i), so dividing only shifts.
 void divide_by_side(const Net& a, Side side, Net& out) {

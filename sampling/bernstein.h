@@ -1,8 +1,9 @@
 // Polynomials of two variables in Bernstein form over [0,1]²: products, derivatives, ranges.
 //
-// Nets are kept *scaled*: entry (i,j) of a net of bidegree (p,q) is the Bernstein coefficient times C(p,i)·C(q,j). A product
-// of two polynomials is then the plain convolution of their nets. By the convex hull property the unscaled coefficients
-// bound the polynomial over [0,1]²: that is where every certificate of this folder comes from.
+// Nets are kept *scaled*: entry (i,j) of a net of bidegree (p,q) is the Bernstein coefficient times
+// C(p,i)·C(q,j). A product of two polynomials is then the plain convolution of their nets. By the convex hull
+// property the unscaled coefficients bound the polynomial over [0,1]²: that is where every certificate of
+// this folder comes from.
 #ifndef DUPIN_SAMPLING_BERNSTEIN_H
 #define DUPIN_SAMPLING_BERNSTEIN_H
 
@@ -46,7 +47,8 @@ double magnitude(const Net& a);
 
 /// A side of the unit square along which a net vanishes.
 enum class Side { u0, u1, v0, v1 };
-/// Divides by the parameter that vanishes on `side` (s, 1−s, t, 1−t); the net must be zero there, and is forced to be.
+/// Divides by the parameter that vanishes on `side` (s, 1−s, t, 1−t); the net must be zero there, and is
+/// forced to be.
 void divide_by_side(const Net& a, Side side, Net& out);
 
 }  // namespace dupin::bernstein

@@ -1,7 +1,7 @@
-// See docs/mathematics.md, "Certificates". F∘S is a polynomial of twice the patch's degrees (over w² for rational ones); its
-// Bernstein coefficients bound |F| over the cell and, through its derivatives and the chart's Jacobian, the difference between
-// the slopes of quadric and surface as graphs over the DP's tangent plane. The angle between two normals is at most the
-// difference of their graphs' slopes.
+// See docs/mathematics.md, "Certificates". F∘S is a polynomial of twice the patch's degrees (over w² for
+// rational ones); its Bernstein coefficients bound |F| over the cell and, through its derivatives and the
+// chart's Jacobian, the difference between the slopes of quadric and surface as graphs over the DP's tangent
+// plane. The angle between two normals is at most the difference of their graphs' slopes.
 #include "bezier_cell.h"
 
 #include <algorithm>
@@ -19,16 +19,28 @@ using bernstein::Side;
 constexpr double kLeastSheet = 0.3;
 /// What a, b, c may take of that 1, so that the sheet's end stays well away.
 constexpr double kMostSteep = 0.5;
-/// The chart's Jacobian changes by at most this much, relative, over an accepted cell: then (s,t) ↦ (x,y) is one to one.
+/// The chart's Jacobian changes by at most this much, relative, over an accepted cell: then (s,t) ↦ (x,y) is
+/// one to one.
 constexpr double kMostTwist = 0.5;
 
-Vec4 operator+(const Vec4& a, const Vec4& b) { return {a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w}; }
-Vec4 operator-(const Vec4& a, const Vec4& b) { return {a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w}; }
-Vec4 operator*(const Vec4& a, double s) { return {a.x * s, a.y * s, a.z * s, a.w * s}; }
-Vec3 xyz(const Vec4& a) { return {a.x, a.y, a.z}; }
-Vec3 dehomogenised(const Vec4& a) { return xyz(a) / a.w; }
+Vec4 operator+(const Vec4& a, const Vec4& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w};
+}
+Vec4 operator-(const Vec4& a, const Vec4& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w};
+}
+Vec4 operator*(const Vec4& a, double s) {
+  return {a.x * s, a.y * s, a.z * s, a.w * s};
+}
+Vec3 xyz(const Vec4& a) {
+  return {a.x, a.y, a.z};
+}
+Vec3 dehomogenised(const Vec4& a) {
+  return xyz(a) / a.w;
+}
 
-/// Value, first and second derivative at ½ of a Bézier polynomial that was reduced to its last `count` <= 3 points.
+/// Value, first and second derivative at ½ of a Bézier polynomial that was reduced to its last `count` <= 3
+/// points.
 struct Middle {
   Vec4 value, first, second;
 };
@@ -39,7 +51,8 @@ Middle middle(const Vec4* b, int count, int degree) {
           (b[0] - b[1] * 2 + b[2]) * (static_cast<double>(degree) * (degree - 1))};
 }
 
-/// The first `unknowns` of the normal equations g x = r, the others 0, with a ridge relative to each one's own size.
+/// The first `unknowns` of the normal equations g x = r, the others 0, with a ridge relative to each one's
+/// own size.
 Vec3 solve_ridge(const double g[3][3], const double r[3], int unknowns) {
   double m[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, y[3] = {}, scale[3] = {};
   for (int k = 0; k < unknowns; ++k) scale[k] = g[k][k] > 0 ? 1 / std::sqrt(g[k][k]) : 0;
@@ -47,11 +60,14 @@ Vec3 solve_ridge(const double g[3][3], const double r[3], int unknowns) {
     y[k] = r[k] * scale[k];
     for (int l = 0; l < unknowns; ++l) m[k][l] = g[k][l] * scale[k] * scale[l] + (k == l ? 1e-10 : 0);
   }
-  const Vec3 x = inverse(Mat3{{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}}) * Vec3{y[0], y[1], y[2]};
+  const Vec3 x =
+      inverse(Mat3{{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}}) *
+      Vec3{y[0], y[1], y[2]};
   return {x.x * scale[0], x.y * scale[1], x.z * scale[2]};
 }
 
-/// g x = r (r in the last column; the lower triangle of g is enough), by Cholesky with a ridge relative to each one's own size.
+/// g x = r (r in the last column; the lower triangle of g is enough), by Cholesky with a ridge relative to
+/// each one's own size.
 void solve_cubic(const double g[4][5], double x[4]) {
   double l[4][4] = {}, y[4], scale[4];
   for (int k = 0; k < 4; ++k) scale[k] = g[k][k] > 0 ? 1 / std::sqrt(g[k][k]) : 0;
@@ -106,8 +122,12 @@ SurfaceJet jet_at_middle(const BezierPatch& patch) {
   return jet;
 }
 
-Range operator+(Range a, Range b) { return {a.lo + b.lo, a.hi + b.hi}; }
-Range operator*(Range a, double s) { return s >= 0 ? Range{a.lo * s, a.hi * s} : Range{a.hi * s, a.lo * s}; }
+Range operator+(Range a, Range b) {
+  return {a.lo + b.lo, a.hi + b.hi};
+}
+Range operator*(Range a, double s) {
+  return s >= 0 ? Range{a.lo * s, a.hi * s} : Range{a.hi * s, a.lo * s};
+}
 Range product(Range a, Range b) {
   const double c[4] = {a.lo * b.lo, a.lo * b.hi, a.hi * b.lo, a.hi * b.hi};
   return {*std::min_element(c, c + 4), *std::max_element(c, c + 4)};
@@ -117,8 +137,8 @@ Range product(Range a, Range b) {
 void reparametrise(Vec4* b, int degree, int stride, double lo, double hi) {
   std::array<Vec4, 32> p, out;
   for (int i = 0; i <= degree; ++i) p[i] = b[i * stride];
-  // One side of the triangle at hi gives the poles over [0,hi]; of those the other side of the triangle at lo/hi, the poles over
-  // [lo,hi].
+  // One side of the triangle at hi gives the poles over [0,hi]; of those the other side of the triangle at
+  // lo/hi, the poles over [lo,hi].
   for (int k = 0; k <= degree; ++k) {
     out[k] = p[0];
     for (int i = 0; i + 1 <= degree - k; ++i) p[i] = p[i] * (1 - hi) + p[i + 1] * hi;
@@ -141,14 +161,16 @@ CollapsedSides collapsed_sides(const BezierPatch& patch) {
     return true;
   };
   const int p = patch.degree_u, q = patch.degree_v;
-  return {single([&](int k) { return patch.pole(0, k); }, q), single([&](int k) { return patch.pole(p, k); }, q),
-          single([&](int k) { return patch.pole(k, 0); }, p), single([&](int k) { return patch.pole(k, q); }, p)};
+  return {
+      single([&](int k) { return patch.pole(0, k); }, q), single([&](int k) { return patch.pole(p, k); }, q),
+      single([&](int k) { return patch.pole(k, 0); }, p), single([&](int k) { return patch.pole(k, q); }, p)};
 }
 
 void split_patch(const BezierPatch& patch, bool along_u, BezierPatch& first, BezierPatch& second) {
   first = patch;
   second = patch;
-  const int degree = along_u ? patch.degree_u : patch.degree_v, lines = along_u ? patch.degree_v : patch.degree_u;
+  const int degree = along_u ? patch.degree_u : patch.degree_v,
+            lines = along_u ? patch.degree_v : patch.degree_u;
   const int stride = along_u ? patch.degree_v + 1 : 1, line_stride = along_u ? 1 : patch.degree_v + 1;
   for (int l = 0; l <= lines; ++l) {
     Vec4* a = first.poles.data() + l * line_stride;
@@ -164,7 +186,8 @@ BezierPatch grown_patch(const BezierPatch& patch, const CellMargins& m) {
   BezierPatch grown = patch;
   for (int j = 0; j <= patch.degree_v; ++j)
     reparametrise(&grown.pole(0, j), patch.degree_u, patch.degree_v + 1, -m.side[3], 1 + m.side[1]);
-  for (int i = 0; i <= patch.degree_u; ++i) reparametrise(&grown.pole(i, 0), patch.degree_v, 1, -m.side[0], 1 + m.side[2]);
+  for (int i = 0; i <= patch.degree_u; ++i)
+    reparametrise(&grown.pole(i, 0), patch.degree_v, 1, -m.side[0], 1 + m.side[2]);
   return grown;
 }
 
@@ -220,16 +243,19 @@ void CellFitter::fit_third_order(double tolerance, QuadricDp& dp) {
   double g[3][3] = {}, r[3] = {};
   for (int i = 0; i <= p; ++i)
     for (int j = 0; j <= q; ++j) {
-      const double s = 1 / (bp[i] * bq[j]), e[3] = {xz_.at(i, j) * s, yz_.at(i, j) * s, 0.5 * zz_.at(i, j) * s}, t = f_.at(i, j) * s;
+      const double s = 1 / (bp[i] * bq[j]),
+                   e[3] = {xz_.at(i, j) * s, yz_.at(i, j) * s, 0.5 * zz_.at(i, j) * s}, t = f_.at(i, j) * s;
       for (int k = 0; k < 3; ++k) {
         r[k] += e[k] * t;
         for (int l = 0; l < 3; ++l) g[k][l] += e[k] * e[l];
       }
     }
-  const double ax = std::max(-box_.lo.x, box_.hi.x), ay = std::max(-box_.lo.y, box_.hi.y), az = std::max(-box_.lo.z, box_.hi.z);
+  const double ax = std::max(-box_.lo.x, box_.hi.x), ay = std::max(-box_.lo.y, box_.hi.y),
+               az = std::max(-box_.lo.z, box_.hi.z);
   const double room = az + tolerance;
   auto steep = [&] { return std::abs(dp.a) * ax + std::abs(dp.b) * ay + std::abs(dp.c) * room > kMostSteep; };
-  // Where the cell is all but flat c means next to nothing, and comes out as large as it likes; likewise a and b.
+  // Where the cell is all but flat c means next to nothing, and comes out as large as it likes; likewise a
+  // and b.
   for (int unknowns = 3; unknowns > 0; --unknowns) {
     Vec3 x = solve_ridge(g, r, unknowns);
     dp.a = x.x, dp.b = x.y, dp.c = x.z;
@@ -237,13 +263,15 @@ void CellFitter::fit_third_order(double tolerance, QuadricDp& dp) {
     dp.a = dp.b = dp.c = 0;
     if (unknowns == 2) break;
   }
-  for (std::size_t i = 0; i < f_.c.size(); ++i) f_.c[i] -= dp.a * xz_.c[i] + dp.b * yz_.c[i] + 0.5 * dp.c * zz_.c[i];
+  for (std::size_t i = 0; i < f_.c.size(); ++i)
+    f_.c[i] -= dp.a * xz_.c[i] + dp.b * yz_.c[i] + 0.5 * dp.c * zz_.c[i];
 }
 
 bool CellFitter::certify(double tolerance, double normal_tolerance, CellFit& out) {
   QuadricDp& dp = out.dp;
   const double value_bound = bernstein::magnitude(f_) / (least_w_ * least_w_);
-  const double ax = std::max(-box_.lo.x, box_.hi.x), ay = std::max(-box_.lo.y, box_.hi.y), az = std::max(-box_.lo.z, box_.hi.z);
+  const double ax = std::max(-box_.lo.x, box_.hi.x), ay = std::max(-box_.lo.y, box_.hi.y),
+               az = std::max(-box_.lo.z, box_.hi.z);
   // Between surface and quadric, which lies at most `tolerance` above or below it.
   const double gz = 1 - std::abs(dp.a) * ax - std::abs(dp.b) * ay - std::abs(dp.c) * (az + tolerance);
   if (!(gz >= kLeastSheet)) return false;
@@ -254,19 +282,22 @@ bool CellFitter::certify(double tolerance, double normal_tolerance, CellFit& out
   return certify_normals(normal_tolerance, gz, out);
 }
 
-/// Ranges of the derivative of A/W^power along one parameter, over the cell. Along a collapsed side that derivative vanishes;
-/// divided by the distance to the side (in the other parameter) it does not, and neither does the Jacobian's column: the gradient
-/// in the chart, which is what counts, stays the same.
+/// Ranges of the derivative of A/W^power along one parameter, over the cell. Along a collapsed side that
+/// derivative vanishes; divided by the distance to the side (in the other parameter) it does not, and neither
+/// does the Jacobian's column: the gradient in the chart, which is what counts, stays the same.
 Range CellFitter::derivative_range(const Net& numerator, bool along_u, int power) {
   const Side* collapsed = along_u ? divide_u_ : divide_v_;
-  const auto derive = [&](const Net& a, Net& out) { along_u ? bernstein::derivative_u(a, out) : bernstein::derivative_v(a, out); };
+  const auto derive = [&](const Net& a, Net& out) {
+    along_u ? bernstein::derivative_u(a, out) : bernstein::derivative_v(a, out);
+  };
   if (!rational_) {
     derive(numerator, d_);
     if (!collapsed) return bernstein::range(d_);
     bernstein::divide_by_side(d_, *collapsed, tmp_);
     return bernstein::range(tmp_);
   }
-  // (A/W^k)' = (A' − k (A/W) W') / W^k. With a the value at the collapsed side, A − a W^k vanishes there and may take A's place.
+  // (A/W^k)' = (A' − k (A/W) W') / W^k. With a the value at the collapsed side, A − a W^k vanishes there and
+  // may take A's place.
   const Net& w = power == 1 ? w_ : w_power_[power - 2];
   Net& a = shifted_;
   a = numerator;
@@ -292,7 +323,8 @@ Range CellFitter::derivative_range(const Net& numerator, bool along_u, int power
   return product(bernstein::range(d_) + drift, over_wk);
 }
 
-/// The Jacobian at the centre and its inverse, in the grown cell's parameters, divided as the derivatives are (see derivative_range).
+/// The Jacobian at the centre and its inverse, in the grown cell's parameters, divided as the derivatives are
+/// (see derivative_range).
 bool CellFitter::set_up_normals(const CollapsedSides& collapsed, const CellMargins& m) {
   if ((collapsed.u0 && collapsed.u1) || (collapsed.v0 && collapsed.v1)) return false;
   const double grow_u = 1 + m.side[3] + m.side[1], grow_v = 1 + m.side[0] + m.side[2];
@@ -304,7 +336,8 @@ bool CellFitter::set_up_normals(const CollapsedSides& collapsed, const CellMargi
   const double over_u = divide_u_ ? 1 / (collapsed.v0 ? mid_v : 1 - mid_v) : 1;
   const double over_v = divide_v_ ? 1 / (collapsed.u0 ? mid_u : 1 - mid_u) : 1;
   double jac[2][2];
-  for (int r = 0; r < 2; ++r) jac[r][0] = jacobian_[r][0] * grow_u * over_u, jac[r][1] = jacobian_[r][1] * grow_v * over_v;
+  for (int r = 0; r < 2; ++r)
+    jac[r][0] = jacobian_[r][0] * grow_u * over_u, jac[r][1] = jacobian_[r][1] * grow_v * over_v;
   const double det = jac[0][0] * jac[1][1] - jac[0][1] * jac[1][0];
   if (!(std::abs(det) > 0)) return false;
   inverse_[0][0] = jac[1][1] / det, inverse_[0][1] = -jac[0][1] / det;
@@ -320,8 +353,10 @@ bool CellFitter::set_up_normals(const CollapsedSides& collapsed, const CellMargi
 double CellFitter::twist() {
   const Range xu = derivative_range(x_, true, 1), xv = derivative_range(x_, false, 1);
   const Range yu = derivative_range(y_, true, 1), yv = derivative_range(y_, false, 1);
-  const Range b00 = xu * inverse_[0][0] + xv * inverse_[1][0], b01 = xu * inverse_[0][1] + xv * inverse_[1][1];
-  const Range b10 = yu * inverse_[0][0] + yv * inverse_[1][0], b11 = yu * inverse_[0][1] + yv * inverse_[1][1];
+  const Range b00 = xu * inverse_[0][0] + xv * inverse_[1][0],
+              b01 = xu * inverse_[0][1] + xv * inverse_[1][1];
+  const Range b10 = yu * inverse_[0][0] + yv * inverse_[1][0],
+              b11 = yu * inverse_[0][1] + yv * inverse_[1][1];
   const double d0 = std::max(1 - b00.lo, b00.hi - 1), d1 = std::max(1 - b11.lo, b11.hi - 1);
   return std::sqrt(d0 * d0 + d1 * d1 + b01.magnitude() * b01.magnitude() + b10.magnitude() * b10.magnitude());
 }
@@ -329,11 +364,12 @@ double CellFitter::twist() {
 /// Largest |J0⁻ᵀ (∂/∂s, ∂/∂t)| of a net over W^power.
 double CellFitter::gradient_bound(const Net& net, int power) {
   const Range fu = derivative_range(net, true, power), fv = derivative_range(net, false, power);
-  return std::hypot((fu * inverse_[0][0] + fv * inverse_[1][0]).magnitude(), (fu * inverse_[0][1] + fv * inverse_[1][1]).magnitude());
+  return std::hypot((fu * inverse_[0][0] + fv * inverse_[1][0]).magnitude(),
+                    (fu * inverse_[0][1] + fv * inverse_[1][1]).magnitude());
 }
 
-/// The cubic form of (x,y) that takes up most of what the quadric leaves of F∘S, by least squares on Bernstein coefficients; the
-/// rest stays in cubic_rest_.
+/// The cubic form of (x,y) that takes up most of what the quadric leaves of F∘S, by least squares on
+/// Bernstein coefficients; the rest stays in cubic_rest_.
 void CellFitter::fit_cubic(QuadricDp& dp) {
   bernstein::multiply(x_, x_, xx_), bernstein::multiply(x_, y_, xy_), bernstein::multiply(y_, y_, yy_);
   bernstein::multiply(xx_, x_, cubic_[0]), bernstein::multiply(xx_, y_, cubic_[1]);
@@ -364,14 +400,18 @@ bool CellFitter::certify_normals(double normal_tolerance, double gz, CellFit& ou
   const double twisted = twist();
   if (!(twisted <= kMostTwist)) return false;
   out.quadric_decides = true;
-  const double ax = std::max(-box_.lo.x, box_.hi.x), ay = std::max(-box_.lo.y, box_.hi.y), az = std::max(-box_.lo.z, box_.hi.z);
-  // From the surface's point to the quadric's, `bound` along z, the drawn slope (C − F)x / Fz changes by this much a length.
+  const double ax = std::max(-box_.lo.x, box_.hi.x), ay = std::max(-box_.lo.y, box_.hi.y),
+               az = std::max(-box_.lo.z, box_.hi.z);
+  // From the surface's point to the quadric's, `bound` along z, the drawn slope (C − F)x / Fz changes by this
+  // much a length.
   auto drift = [&] {
     const double* c = dp.cubic.data();
     const double cx = 3 * std::abs(c[0]) * ax * ax + 2 * std::abs(c[1]) * ax * ay + std::abs(c[2]) * ay * ay;
     const double cy = std::abs(c[1]) * ax * ax + 2 * std::abs(c[2]) * ax * ay + 3 * std::abs(c[3]) * ay * ay;
-    const double fx = std::abs(dp.lambda_u) * ax + std::abs(dp.a) * az + cx, fy = std::abs(dp.lambda_v) * ay + std::abs(dp.b) * az + cy;
-    return std::hypot(std::abs(dp.a) / gz + std::abs(dp.c) * fx / (gz * gz), std::abs(dp.b) / gz + std::abs(dp.c) * fy / (gz * gz));
+    const double fx = std::abs(dp.lambda_u) * ax + std::abs(dp.a) * az + cx,
+                 fy = std::abs(dp.lambda_v) * ay + std::abs(dp.b) * az + cy;
+    return std::hypot(std::abs(dp.a) / gz + std::abs(dp.c) * fx / (gz * gz),
+                      std::abs(dp.b) / gz + std::abs(dp.c) * fy / (gz * gz));
   };
   const double over = 1 / ((1 - twisted) * gz);
   out.normal_bound = gradient_bound(f_, 2) * over + out.bound * drift();
@@ -381,7 +421,8 @@ bool CellFitter::certify_normals(double normal_tolerance, double gz, CellFit& ou
   return out.normal_bound <= normal_tolerance;
 }
 
-CellFit CellFitter::fit(const BezierPatch& cell, double tolerance, double normal_tolerance, const CellMargins& wanted) {
+CellFit CellFitter::fit(const BezierPatch& cell, double tolerance, double normal_tolerance,
+                        const CellMargins& wanted) {
   CellFit out;
   const CollapsedSides collapsed = collapsed_sides(cell);
   out.margins = wanted;
@@ -393,8 +434,12 @@ CellFit CellFitter::fit(const BezierPatch& cell, double tolerance, double normal
     double u = 0, v = 0;
     for (int i = 0; i <= cell.degree_u; ++i)
       for (int j = 0; j <= cell.degree_v; ++j) {
-        if (i > 0) u = std::max(u, distance(dehomogenised(cell.pole(i, j)), dehomogenised(cell.pole(i - 1, j))) * cell.degree_u);
-        if (j > 0) v = std::max(v, distance(dehomogenised(cell.pole(i, j)), dehomogenised(cell.pole(i, j - 1))) * cell.degree_v);
+        if (i > 0)
+          u = std::max(u, distance(dehomogenised(cell.pole(i, j)), dehomogenised(cell.pole(i - 1, j))) *
+                              cell.degree_u);
+        if (j > 0)
+          v = std::max(v, distance(dehomogenised(cell.pole(i, j)), dehomogenised(cell.pole(i, j - 1))) *
+                              cell.degree_v);
       }
     return u >= v;
   };
@@ -405,8 +450,8 @@ CellFit CellFitter::fit(const BezierPatch& cell, double tolerance, double normal
   fit_third_order(tolerance, out.dp);
   out.valid = set_up_normals(collapsed, out.margins) && certify(tolerance, normal_tolerance, out);
   if (!out.valid) {
-    // Where the quadric is not close enough, along the parameter in which F∘S varies more; where the cell is bent or twisted too
-    // much to be looked at that way, along its longer side.
+    // Where the quadric is not close enough, along the parameter in which F∘S varies more; where the cell is
+    // bent or twisted too much to be looked at that way, along its longer side.
     if (!out.quadric_decides) return out;
     bernstein::derivative_u(f_, tmp_), bernstein::derivative_v(f_, d_);
     const double u = bernstein::magnitude(tmp_), v = bernstein::magnitude(d_);

@@ -10,8 +10,9 @@
 
 namespace dupin {
 
-/// A cell is a patch over its own [0,1]². Its certificate holds on the cell grown by a part of its width on every side (not across
-/// a collapsed one): neighbouring DPs overlap there, so that no crack opens between their sheets.
+/// A cell is a patch over its own [0,1]². Its certificate holds on the cell grown by a part of its width on
+/// every side (not across a collapsed one): neighbouring DPs overlap there, so that no crack opens between
+/// their sheets.
 inline constexpr double kCellMargin = 0.04;
 /// For the sides v = 0, u = 1, v = 1, u = 0.
 struct CellMargins {
@@ -37,15 +38,17 @@ struct BorderPoles {
 
 /// What could be proved about a cell's DP.
 struct CellFit {
-  bool valid = false;     ///< the cell is a graph over the DP's tangent plane and the quadric one sheet above it; the rest holds
-  bool split_u = true;    ///< if the cell has to be split: along u or along v
+  bool valid = false;   ///< the cell is a graph over the DP's tangent plane and the quadric one sheet above
+                        ///< it; the rest holds
+  bool split_u = true;  ///< if the cell has to be split: along u or along v
   bool quadric_decides = false;  ///< it is one graph, only not close enough to the quadric
-  double bound = 0;       ///< largest distance between quadric and surface, along the DP's normal
+  double bound = 0;              ///< largest distance between quadric and surface, along the DP's normal
   double normal_bound = 0;
-  QuadricDp dp;           ///< frame, quadric, z-range
-  CellMargins margins;    ///< as asked for, 0 at collapsed sides
+  QuadricDp dp;                            ///< frame, quadric, z-range
+  CellMargins margins;                     ///< as asked for, 0 at collapsed sides
   double margin_needed[4] = {0, 0, 0, 0};  ///< for whoever makes the footprint: what its sides would take
-  /// The grown cell's poles along its border, in the DP's (x,y): sides v = 0, u = 1, v = 1, u = 0; the cell's own likewise.
+  /// The grown cell's poles along its border, in the DP's (x,y): sides v = 0, u = 1, v = 1, u = 0; the cell's
+  /// own likewise.
   BorderPoles border[4], grown_border[4];
 };
 
@@ -53,7 +56,8 @@ struct CellFit {
 class CellFitter {
  public:
   /// Stops early, with valid = false, once a bound is known to exceed the tolerances.
-  CellFit fit(const BezierPatch& cell, double tolerance, double normal_tolerance, const CellMargins& margins = {});
+  CellFit fit(const BezierPatch& cell, double tolerance, double normal_tolerance,
+              const CellMargins& margins = {});
 
  private:
   bool place(const BezierPatch& cell, CellFit& out);
@@ -67,14 +71,15 @@ class CellFitter {
   double gradient_bound(const bernstein::Net& net, int power);
   bernstein::Range derivative_range(const bernstein::Net& numerator, bool along_u, int power);
 
-  bernstein::Net x_, y_, z_, w_;                    // local homogeneous coordinates
-  bernstein::Net f_, xz_, yz_, zz_;                 // F's numerator and its parts
+  bernstein::Net x_, y_, z_, w_;     // local homogeneous coordinates
+  bernstein::Net f_, xz_, yz_, zz_;  // F's numerator and its parts
   bernstein::Net xx_, xy_, yy_, cubic_[4], cubic_rest_;
   bernstein::Net w_power_[2], d_, dw_, shifted_, tmp_;
   double least_w_ = 1, most_w_ = 1;
   bool rational_ = false;
-  Box3 box_;                                        // of the grown cell, local
-  double jacobian_[2][2] = {}, inverse_[2][2] = {}; // ∂(x,y)/∂(s,t) at the centre; inverse in the grown cell's parameters
+  Box3 box_;  // of the grown cell, local
+  double jacobian_[2][2] = {},
+         inverse_[2][2] = {};  // ∂(x,y)/∂(s,t) at the centre; inverse in the grown cell's parameters
   const bernstein::Side *divide_u_ = nullptr, *divide_v_ = nullptr;  // what ∂/∂u, ∂/∂v are divided by
 };
 

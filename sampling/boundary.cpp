@@ -31,7 +31,9 @@ class Vertices {
   std::vector<std::uint32_t> parent_;
 };
 
-std::uint32_t end_of(const Trim& trim, bool last) { return 2 * trim.edge + (trim.reversed != last ? 1u : 0u); }
+std::uint32_t end_of(const Trim& trim, bool last) {
+  return 2 * trim.edge + (trim.reversed != last ? 1u : 0u);
+}
 
 Vec3 end_point(const std::vector<ArcChain>& chains, std::uint32_t end) {
   const auto& arcs = chains[end / 2].arcs;
@@ -40,7 +42,8 @@ Vec3 end_point(const std::vector<ArcChain>& chains, std::uint32_t end) {
 
 /// How far apart two ends may lie to be one vertex.
 double join_distance(const Part& part, const Trim& a, const Trim& b) {
-  return 4 * std::max({part.edges[a.edge].tolerance, part.edges[b.edge].tolerance, part.box.diagonal() * 1e-7});
+  return 4 *
+         std::max({part.edges[a.edge].tolerance, part.edges[b.edge].tolerance, part.box.diagonal() * 1e-7});
 }
 
 void join_vertices(const Part& part, const std::vector<ArcChain>& chains, Vertices& vertices) {
@@ -59,7 +62,9 @@ void join_vertices(const Part& part, const std::vector<ArcChain>& chains, Vertic
     }
 }
 
-bool whole_turn(const Edge& edge) { return std::abs(edge.t1 - edge.t0 - kTwoPi) < 1e-9; }
+bool whole_turn(const Edge& edge) {
+  return std::abs(edge.t1 - edge.t0 - kTwoPi) < 1e-9;
+}
 
 bool whole_ellipse(const Edge& edge, WholeEllipse& out) {
   if (!edge.curve || !whole_turn(edge)) return false;
@@ -97,10 +102,12 @@ void flatten(const Trim& trim, double t0, double t1, bool backwards, std::vector
   }
 }
 
-/// What a trim's curve in space and its pcurve on the surface are apart, as a displacement outwards along the surface.
+/// What a trim's curve in space and its pcurve on the surface are apart, as a displacement outwards along the
+/// surface.
 class Widening {
  public:
-  Widening(const Surface& surface, const Trim& trim, const Edge& edge) : surface_(surface), trim_(trim), edge_(edge) {}
+  Widening(const Surface& surface, const Trim& trim, const Edge& edge)
+      : surface_(surface), trim_(trim), edge_(edge) {}
 
   /// At the edge's parameter t, whose point in space is p; `along` is the loop's direction there.
   Vec3 at(double t, const Vec3& p, const Vec3& along) const {
@@ -119,8 +126,9 @@ class Widening {
   const Edge& edge_;
 };
 
-void append_trim(const Part& part, const Face& face, const Trim& trim, const std::vector<ArcChain>& chains, bool with_uv,
-                 FaceLoop& loop, std::vector<Vec2>& polygon, std::vector<std::array<Vec3, 3>>& outward) {
+void append_trim(const Part& part, const Face& face, const Trim& trim, const std::vector<ArcChain>& chains,
+                 bool with_uv, FaceLoop& loop, std::vector<Vec2>& polygon,
+                 std::vector<std::array<Vec3, 3>>& outward) {
   const Edge& edge = part.edges[trim.edge];
   const Surface& surface = part.surfaces[face.surface];
   const bool seam = is_inner_seam(face, trim);
@@ -145,8 +153,9 @@ void append_trim(const Part& part, const Face& face, const Trim& trim, const std
   }
 }
 
-/// Files are exact to a tolerance: an edge may lie off both its faces, and its projections onto them apart. Each face reaches out by
-/// as much as the edge is off it, so that no crack shows however near one looks. Arcs stay joined.
+/// Files are exact to a tolerance: an edge may lie off both its faces, and its projections onto them apart.
+/// Each face reaches out by as much as the edge is off it, so that no crack shows however near one looks.
+/// Arcs stay joined.
 void reach_over_gaps(FaceLoop& loop, const std::vector<std::array<Vec3, 3>>& outward) {
   const std::size_t n = loop.arcs.size();
   if (n < 2 || outward.size() != n) return;
@@ -156,15 +165,19 @@ void reach_over_gaps(FaceLoop& loop, const std::vector<std::array<Vec3, 3>>& out
     ConicArc3& arc = loop.arcs[i].arc;
     const Vec3 &first = joint[(i + n - 1) % n], &last = joint[i];
     arc.p0 += first, arc.p2 += last;
-    // The ends may be exact and the middle off: its displacement d takes p1 along by d (1 + w) / w, less what the ends bring.
+    // The ends may be exact and the middle off: its displacement d takes p1 along by d (1 + w) / w, less what
+    // the ends bring.
     const Vec3 ends = (first + last) * 0.5, bow = outward[i][1] - ends;
     if (arc.line && bow == Vec3{}) continue;
-    if (arc.line) arc.line = false, arc.w = 1, arc.p1 = (arc.p0 + arc.p2) * 0.5 + bow * 2;
-    else arc.p1 += ends + bow * ((1 + arc.w) / arc.w);
+    if (arc.line)
+      arc.line = false, arc.w = 1, arc.p1 = (arc.p0 + arc.p2) * 0.5 + bow * 2;
+    else
+      arc.p1 += ends + bow * ((1 + arc.w) / arc.w);
   }
 }
 
-/// Consecutive arcs whose ends are not one vertex get a straight piece between them: a loop is closed whatever the file's gaps.
+/// Consecutive arcs whose ends are not one vertex get a straight piece between them: a loop is closed
+/// whatever the file's gaps.
 void close_gaps(FaceLoop& loop) {
   std::vector<FaceArc> closed;
   for (std::size_t i = 0; i < loop.arcs.size(); ++i) {
@@ -185,7 +198,8 @@ void close_gaps(FaceLoop& loop) {
 
 std::vector<ArcChain> part_edge_chains(const Part& part, const LocalTolerance& tolerance) {
   std::vector<ArcChain> chains(part.edges.size());
-  parallel_for(part.edges.size(), [&](std::size_t i) { chains[i] = approximate_edge(part.edges[i], tolerance); }, 64);
+  parallel_for(
+      part.edges.size(), [&](std::size_t i) { chains[i] = approximate_edge(part.edges[i], tolerance); }, 64);
   Vertices vertices(part.edges.size());
   join_vertices(part, chains, vertices);
   for (std::uint32_t end = 0; end < 2 * chains.size(); ++end) {
@@ -197,7 +211,8 @@ std::vector<ArcChain> part_edge_chains(const Part& part, const LocalTolerance& t
   return chains;
 }
 
-FaceBoundary face_boundary(const Part& part, const Face& face, const std::vector<ArcChain>& chains, bool with_uv) {
+FaceBoundary face_boundary(const Part& part, const Face& face, const std::vector<ArcChain>& chains,
+                           bool with_uv) {
   FaceBoundary boundary;
   for (const Loop& trims : face.loops) {
     FaceLoop loop;

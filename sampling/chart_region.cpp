@@ -19,11 +19,16 @@ Box2 box_of(std::span<const Vec2> points) {
   return box;
 }
 
-std::array<Vec2, 3> hull_of(const ArcPiece& a) { return {a.p0, a.p1, a.p2}; }
-std::array<Vec2, 2> hull_of(const LinePiece& l) { return {l.p0, l.p1}; }
+std::array<Vec2, 3> hull_of(const ArcPiece& a) {
+  return {a.p0, a.p1, a.p2};
+}
+std::array<Vec2, 2> hull_of(const LinePiece& l) {
+  return {l.p0, l.p1};
+}
 std::array<Vec2, 4> hull_of(const EllipsePiece& e) {
   // |m d| <= 1 implies |d| <= 1 / (least eigenvalue of m).
-  const double mean = (e.mxx + e.myy) / 2, least = mean - std::hypot((e.mxx - e.myy) / 2, e.mxy), r = 1 / least;
+  const double mean = (e.mxx + e.myy) / 2, least = mean - std::hypot((e.mxx - e.myy) / 2, e.mxy),
+               r = 1 / least;
   return {e.center + Vec2{-r, -r}, e.center + Vec2{r, -r}, e.center + Vec2{r, r}, e.center + Vec2{-r, r}};
 }
 
@@ -137,8 +142,8 @@ void ChartProjector::add(const WholeEllipse& ellipse, ChartPieces& out) const {
   const Vec2 x{dot(ellipse.x, dp_.u), dot(ellipse.x, dp_.v)}, y{dot(ellipse.y, dp_.u), dot(ellipse.y, dp_.v)};
   // In the face's own plane the axes stay perpendicular: m = x̂x̂ᵀ/|x| + ŷŷᵀ/|y|.
   const double a = dot(x, x), b = dot(y, y), ia = 1 / (a * std::sqrt(a)), ib = 1 / (b * std::sqrt(b));
-  out.ellipses.push_back({to_chart(ellipse.center), x.x * x.x * ia + y.x * y.x * ib, x.x * x.y * ia + y.x * y.y * ib,
-                          x.y * x.y * ia + y.y * y.y * ib, ellipse.feature});
+  out.ellipses.push_back({to_chart(ellipse.center), x.x * x.x * ia + y.x * y.x * ib,
+                          x.x * x.y * ia + y.x * y.y * ib, x.y * x.y * ia + y.y * y.y * ib, ellipse.feature});
 }
 
 double clearance(const ChartPieces& pieces, Vec2 p) {
@@ -163,7 +168,8 @@ bool state_at(const ChartPieces& pieces, Vec2 reference, bool reference_state, V
   return inside;
 }
 
-void emit_dp(const QuadricDp& dp, const ChartPieces& pieces, Vec2 reference, bool reference_state, PartDps& out) {
+void emit_dp(const QuadricDp& dp, const ChartPieces& pieces, Vec2 reference, bool reference_state,
+             PartDps& out) {
   QuadricDp d = dp;
   d.first_line = static_cast<std::uint32_t>(out.lines.size());
   d.first_arc = static_cast<std::uint32_t>(out.arcs.size());
@@ -186,12 +192,14 @@ struct ExactEmitter {
   PartDps& out;
   int emitted = 0;
 
-  void emit(const ChartPieces& pieces, const Box2& box, std::uint8_t sides, Vec2 reference, bool state, int depth) {
+  void emit(const ChartPieces& pieces, const Box2& box, std::uint8_t sides, Vec2 reference, bool state,
+            int depth) {
     if (pieces.empty() && !state) return;
     if (pieces.count() <= kMaxPieces || depth >= kMaxSplits) {
       QuadricDp d = dp;
       if (depth > 0) {
-        d.footprint = {Vec2{box.lo.x, box.lo.y}, Vec2{box.hi.x, box.lo.y}, Vec2{box.hi.x, box.hi.y}, Vec2{box.lo.x, box.hi.y}};
+        d.footprint = {Vec2{box.lo.x, box.lo.y}, Vec2{box.hi.x, box.lo.y}, Vec2{box.hi.x, box.hi.y},
+                       Vec2{box.lo.x, box.hi.y}};
         d.feature_sides = static_cast<std::uint8_t>((dp.feature_sides & 0xF0) | sides);
       }
       emit_dp(d, pieces, reference, state, out);
@@ -232,7 +240,8 @@ struct ExactEmitter {
 
 }  // namespace
 
-int emit_exact_dp(const QuadricDp& dp, const ChartPieces& pieces, Vec2 reference, bool reference_state, PartDps& out) {
+int emit_exact_dp(const QuadricDp& dp, const ChartPieces& pieces, Vec2 reference, bool reference_state,
+                  PartDps& out) {
   ExactEmitter emitter{dp, out};
   emitter.emit(pieces, box_of(dp.footprint), dp.feature_sides, reference, reference_state, 0);
   return emitter.emitted;

@@ -1,5 +1,5 @@
-// From arcs in space to the region of a DP: boundary pieces in the DP's tangent plane, and where they are too many, several
-// DPs with smaller footprints.
+// From arcs in space to the region of a DP: boundary pieces in the DP's tangent plane, and where they are too
+// many, several DPs with smaller footprints.
 #ifndef DUPIN_SAMPLING_CHART_REGION_H
 #define DUPIN_SAMPLING_CHART_REGION_H
 
@@ -24,8 +24,8 @@ struct ChartPieces {
   bool empty() const { return count() == 0; }
 };
 
-/// Projects arcs into the tangent plane of `dp`, only those parts of them that lie on the sheet where the quadric is a graph
-/// (∂F/∂z > 0), and that may meet its footprint.
+/// Projects arcs into the tangent plane of `dp`, only those parts of them that lie on the sheet where the
+/// quadric is a graph (∂F/∂z > 0), and that may meet its footprint.
 class ChartProjector {
  public:
   explicit ChartProjector(const QuadricDp& dp);
@@ -45,8 +45,8 @@ class ChartProjector {
   std::vector<ConicArc3> clipped_;
 };
 
-/// Whether the convex quadrilateral and the piece's hull may meet (a separating line among the quadrilateral's sides and the
-/// axes was not found).
+/// Whether the convex quadrilateral and the piece's hull may meet (a separating line among the
+/// quadrilateral's sides and the axes was not found).
 bool may_meet(const std::array<Vec2, 4>& quad, std::span<const Vec2> hull);
 
 /// An estimate of how far p is from the nearest piece: a reference is best kept away from them.
@@ -56,11 +56,14 @@ double clearance(const ChartPieces& pieces, Vec2 p);
 bool state_at(const ChartPieces& pieces, Vec2 reference, bool reference_state, Vec2 p);
 
 /// Appends the DP with these pieces to `out`, `reference_state` being whether `reference` itself is inside.
-void emit_dp(const QuadricDp& dp, const ChartPieces& pieces, Vec2 reference, bool reference_state, PartDps& out);
+void emit_dp(const QuadricDp& dp, const ChartPieces& pieces, Vec2 reference, bool reference_state,
+             PartDps& out);
 
-/// The same for a DP that is exact everywhere: where pieces are too many, its footprint is halved until they are not, parts
-/// without a piece that lie outside being left out. `dp.footprint` must be a rectangle. Returns the number of DPs.
-int emit_exact_dp(const QuadricDp& dp, const ChartPieces& pieces, Vec2 reference, bool reference_state, PartDps& out);
+/// The same for a DP that is exact everywhere: where pieces are too many, its footprint is halved until they
+/// are not, parts without a piece that lie outside being left out. `dp.footprint` must be a rectangle.
+/// Returns the number of DPs.
+int emit_exact_dp(const QuadricDp& dp, const ChartPieces& pieces, Vec2 reference, bool reference_state,
+                  PartDps& out);
 
 }  // namespace dupin
 

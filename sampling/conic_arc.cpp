@@ -11,7 +11,8 @@ namespace dupin {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-/// Arcs turn by at most this much, so that their weights stay well above 0 and a plane cuts them where one expects.
+/// Arcs turn by at most this much, so that their weights stay well above 0 and a plane cuts them where one
+/// expects.
 constexpr double kMaxTurn = kPi * 2 / 3 * (1 + 1e-9);
 /// Halvings of one Bézier segment before what is left is taken as it is.
 constexpr int kMaxDepth = 12;
@@ -50,7 +51,8 @@ void append_hyperbola(const HyperbolaOf<Vec3>& h, double t0, double t1, ArcChain
   for (int i = 0; i < count; ++i) {
     const double a = t0 + (t1 - t0) * i / count, b = i + 1 == count ? t1 : t0 + (t1 - t0) * (i + 1) / count;
     const double w = std::cosh((b - a) / 2);
-    chain.arcs.push_back({i == 0 ? at(a, 1) : chain.arcs.back().p2, at((a + b) / 2, 1 / w), at(b, 1), w, false, a, b});
+    chain.arcs.push_back(
+        {i == 0 ? at(a, 1) : chain.arcs.back().p2, at((a + b) / 2, 1 / w), at(b, 1), w, false, a, b});
   }
 }
 
@@ -64,11 +66,15 @@ struct Quadratic {
   }
 };
 
-Vec3 dehomogenised(const Vec4& p) { return Vec3{p.x, p.y, p.z} / p.w; }
+Vec3 dehomogenised(const Vec4& p) {
+  return Vec3{p.x, p.y, p.z} / p.w;
+}
 
-/// Largest |C(t) − q(t)| over the segment, from the Bernstein coefficients of N − w·q, divided by the least w.
+/// Largest |C(t) − q(t)| over the segment, from the Bernstein coefficients of N − w·q, divided by the least
+/// w.
 double difference_bound(const BezierCurve3& curve, const Quadratic& q) {
-  const Vec3 b[3] = {q.blossom(curve.t0, curve.t0), q.blossom(curve.t0, curve.t1), q.blossom(curve.t1, curve.t1)};
+  const Vec3 b[3] = {q.blossom(curve.t0, curve.t0), q.blossom(curve.t0, curve.t1),
+                     q.blossom(curve.t1, curve.t1)};
   const int p = curve.degree, n = p + 2;
   const auto bin_p = bernstein::binomials(p), bin_n = bernstein::binomials(n);
   double largest = 0, least_weight = curve.poles[0].w;
@@ -87,7 +93,8 @@ double difference_bound(const BezierCurve3& curve, const Quadratic& q) {
   return least_weight > 0 ? largest / least_weight : std::numeric_limits<double>::infinity();
 }
 
-/// Largest distance of the segment's poles from the chord a–b (bounds the curve's by the convex hull property).
+/// Largest distance of the segment's poles from the chord a–b (bounds the curve's by the convex hull
+/// property).
 double distance_from_chord(const BezierCurve3& curve, const Vec3& a, const Vec3& b) {
   const Vec3 d = b - a;
   const double dd = dot(d, d);
@@ -120,7 +127,8 @@ std::array<BezierCurve3, 2> halves(const BezierCurve3& curve) {
     r[0].poles[static_cast<std::size_t>(k)] = p[0];
     r[1].poles[static_cast<std::size_t>(n - k)] = p[static_cast<std::size_t>(n - k)];
     for (int i = 0; i < n - k; ++i)
-      p[i] = {(p[i].x + p[i + 1].x) / 2, (p[i].y + p[i + 1].y) / 2, (p[i].z + p[i + 1].z) / 2, (p[i].w + p[i + 1].w) / 2};
+      p[i] = {(p[i].x + p[i + 1].x) / 2, (p[i].y + p[i + 1].y) / 2, (p[i].z + p[i + 1].z) / 2,
+              (p[i].w + p[i + 1].w) / 2};
   }
   return r;
 }
@@ -136,11 +144,13 @@ bool exact_conic(const BezierCurve3& curve, ConicArc3& arc) {
   if (curve.degree != 2) return false;
   const Vec4 &a = curve.poles[0], &b = curve.poles[1], &c = curve.poles[2];
   if (!(a.w > 0 && c.w > 0 && b.w > 0)) return false;
-  arc = {dehomogenised(a), dehomogenised(b), dehomogenised(c), b.w / std::sqrt(a.w * c.w), false, curve.t0, curve.t1};
+  arc = {dehomogenised(a), dehomogenised(b), dehomogenised(c), b.w / std::sqrt(a.w * c.w), false,
+         curve.t0,         curve.t1};
   return true;
 }
 
-/// Consecutive Bézier segments as few arcs as the tolerance allows: all of them by one line or one quadratic, else each half.
+/// Consecutive Bézier segments as few arcs as the tolerance allows: all of them by one line or one quadratic,
+/// else each half.
 class SplineFitter {
  public:
   SplineFitter(const LocalTolerance& tolerance, ArcChain& chain) : tolerance_(tolerance), chain_(chain) {}
@@ -149,11 +159,13 @@ class SplineFitter {
     Box3 box;
     for (const BezierCurve3& s : segments) box.add(poles_box(s));
     const double tolerance = tolerance_(box);
-    const Vec3 p0 = dehomogenised(segments.front().poles.front()), p2 = dehomogenised(segments.back().poles.back());
+    const Vec3 p0 = dehomogenised(segments.front().poles.front()),
+               p2 = dehomogenised(segments.back().poles.back());
     const double t0 = segments.front().t0, t1 = segments.back().t1;
     double line = 0;
     for (const BezierCurve3& s : segments) line = std::max(line, distance_from_chord(s, p0, p2));
-    if (line <= std::max(tolerance * 0.1, box.diagonal() * 1e-9) || (line <= tolerance && std::isinf(tolerance)))
+    if (line <= std::max(tolerance * 0.1, box.diagonal() * 1e-9) ||
+        (line <= tolerance && std::isinf(tolerance)))
       return push(line_arc(p0, p2, t0, t1), std::isinf(tolerance) ? 0 : line);
     ConicArc3 conic;
     if (segments.size() == 1 && exact_conic(segments[0], conic)) return push(conic, 0);
@@ -166,7 +178,8 @@ class SplineFitter {
       deviation = std::max(deviation, difference_bound(s, q));
       if (deviation > tolerance) break;
     }
-    if (deviation <= tolerance) return push({p0, q.p1, p2, 1, false, t0, t1}, std::isinf(tolerance) ? 0 : deviation);
+    if (deviation <= tolerance)
+      return push({p0, q.p1, p2, 1, false, t0, t1}, std::isinf(tolerance) ? 0 : deviation);
     split(segments, depth);
   }
 
@@ -198,7 +211,8 @@ class SplineFitter {
 };
 
 /// Anything else: quadratics through three points, checked at five more.
-void append_sampled(const Curve3& curve, double t0, double t1, const LocalTolerance& tolerance, int depth, ArcChain& chain) {
+void append_sampled(const Curve3& curve, double t0, double t1, const LocalTolerance& tolerance, int depth,
+                    ArcChain& chain) {
   const double middle = (t0 + t1) / 2;
   const Vec3 p0 = point_at(curve, t0), m = point_at(curve, middle), p2 = point_at(curve, t1);
   const Quadratic q{p0, m * 2 - (p0 + p2) * 0.5, p2, t0, t1};
@@ -213,7 +227,8 @@ void append_sampled(const Curve3& curve, double t0, double t1, const LocalTolera
   // The largest of seven samples of a cubic error is at least 0.9 of the largest.
   const double allowed = tolerance(box);
   if (deviation * 1.25 <= allowed || depth >= kMaxDepth) {
-    chain.arcs.push_back({chain.arcs.empty() ? p0 : chain.arcs.back().p2, q.p1, p2, 1, false, t0, t1, std::isinf(allowed) ? 0 : deviation * 1.25});
+    chain.arcs.push_back({chain.arcs.empty() ? p0 : chain.arcs.back().p2, q.p1, p2, 1, false, t0, t1,
+                          std::isinf(allowed) ? 0 : deviation * 1.25});
     chain.deviation = std::max(chain.deviation, chain.arcs.back().deviation);
     return;
   }
@@ -243,20 +258,31 @@ Vec3 point_at(const ConicArc3& arc, double s) {
 }
 
 ConicArc3 sub_arc(const ConicArc3& arc, double s0, double s1) {
-  if (arc.line) return line_arc(s0 == 0 ? arc.p0 : point_at(arc, s0), s1 == 1 ? arc.p2 : point_at(arc, s1), arc.t0, arc.t1);
+  if (arc.line)
+    return line_arc(s0 == 0 ? arc.p0 : point_at(arc, s0), s1 == 1 ? arc.p2 : point_at(arc, s1), arc.t0,
+                    arc.t1);
   const Homogeneous a = homogeneous(arc, s0), c = homogeneous(arc, s1);
   const double m0 = (1 - s0) * (1 - s1), m1 = s0 * (1 - s1) + s1 * (1 - s0), m2 = s0 * s1;
   const Vec3 b = arc.p0 * m0 + arc.p1 * (m1 * arc.w) + arc.p2 * m2;
   const double bw = m0 + m1 * arc.w + m2;
-  return {s0 == 0 ? arc.p0 : a.p / a.w, b / bw, s1 == 1 ? arc.p2 : c.p / c.w, bw / std::sqrt(a.w * c.w), false, arc.t0, arc.t1, arc.deviation};
+  return {s0 == 0 ? arc.p0 : a.p / a.w,
+          b / bw,
+          s1 == 1 ? arc.p2 : c.p / c.w,
+          bw / std::sqrt(a.w * c.w),
+          false,
+          arc.t0,
+          arc.t1,
+          arc.deviation};
 }
 
 Box3 bounding_box(const ConicArc3& arc) {
   Box3 box;
   box.add(arc.p0), box.add(arc.p2);
   if (arc.line) return box;
-  // The arc turns by less than a half turn: it stays within the triangle, and for w <= 1 much closer to the chord.
-  const Vec3 chord_mid = (arc.p0 + arc.p2) * 0.5, shoulder = chord_mid + (arc.p1 - chord_mid) * (arc.w / (1 + arc.w));
+  // The arc turns by less than a half turn: it stays within the triangle, and for w <= 1 much closer to the
+  // chord.
+  const Vec3 chord_mid = (arc.p0 + arc.p2) * 0.5,
+             shoulder = chord_mid + (arc.p1 - chord_mid) * (arc.w / (1 + arc.w));
   box.add(arc.p0 + (shoulder - chord_mid)), box.add(arc.p2 + (shoulder - chord_mid));
   return box;
 }
@@ -281,16 +307,22 @@ ArcChain approximate_edge(const Edge& edge, const LocalTolerance& tolerance) {
   if (!edge.curve) return chain;
   const auto& g = edge.curve->geometry;
   if (const auto* line = std::get_if<LineOf<Vec3>>(&g)) {
-    chain.arcs.push_back(line_arc(line->origin + line->direction * edge.t0, line->origin + line->direction * edge.t1, edge.t0, edge.t1));
+    chain.arcs.push_back(line_arc(line->origin + line->direction * edge.t0,
+                                  line->origin + line->direction * edge.t1, edge.t0, edge.t1));
   } else if (const auto* circle = std::get_if<CircleOf<Vec3>>(&g)) {
-    append_ellipse(circle->center, circle->x * circle->radius, circle->y * circle->radius, edge.t0, edge.t1, chain);
+    append_ellipse(circle->center, circle->x * circle->radius, circle->y * circle->radius, edge.t0, edge.t1,
+                   chain);
   } else if (const auto* ellipse = std::get_if<EllipseOf<Vec3>>(&g)) {
-    append_ellipse(ellipse->center, ellipse->x * ellipse->major, ellipse->y * ellipse->minor, edge.t0, edge.t1, chain);
+    append_ellipse(ellipse->center, ellipse->x * ellipse->major, ellipse->y * ellipse->minor, edge.t0,
+                   edge.t1, chain);
   } else if (const auto* h = std::get_if<HyperbolaOf<Vec3>>(&g)) {
     append_hyperbola(*h, edge.t0, edge.t1, chain);
   } else if (const auto* p = std::get_if<ParabolaOf<Vec3>>(&g)) {
-    auto blossom = [&](double a, double b) { return p->vertex + p->x * (a * b / (4 * p->focal)) + p->y * ((a + b) / 2); };
-    chain.arcs.push_back({blossom(edge.t0, edge.t0), blossom(edge.t0, edge.t1), blossom(edge.t1, edge.t1), 1, false, edge.t0, edge.t1});
+    auto blossom = [&](double a, double b) {
+      return p->vertex + p->x * (a * b / (4 * p->focal)) + p->y * ((a + b) / 2);
+    };
+    chain.arcs.push_back({blossom(edge.t0, edge.t0), blossom(edge.t0, edge.t1), blossom(edge.t1, edge.t1), 1,
+                          false, edge.t0, edge.t1});
   } else if (const auto segments = bezier_curves(*edge.curve, edge.t0, edge.t1); !segments.empty()) {
     SplineFitter(tolerance, chain).fit(segments, 0);
   } else {

@@ -1,6 +1,7 @@
-// Faces on cylinders, cones and spheres. Whole rectangles of parameters (bores, bosses, fillets, balls) are one DP whose footprint
-// and z-range, or two planes, say where it ends; other faces are cut into charts, in each of which the surface is a graph over its
-// tangent plane and the trims are boundary pieces. Charts overlap freely: every one of them draws the same surface.
+// Faces on cylinders, cones and spheres. Whole rectangles of parameters (bores, bosses, fillets, balls) are
+// one DP whose footprint and z-range, or two planes, say where it ends; other faces are cut into charts, in
+// each of which the surface is a graph over its tangent plane and the trims are boundary pieces. Charts
+// overlap freely: every one of them draws the same surface.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -17,7 +18,9 @@ constexpr double kChartAngle = 100 * kPi / 180;
 /// Beyond this half-angle a sector's straight borders are better conditioned as a bound on z than on x.
 constexpr double kSideByX = kPi / 4;
 
-Vec3 radial(const Frame3& f, double u) { return f.x * std::cos(u) + f.y * std::sin(u); }
+Vec3 radial(const Frame3& f, double u) {
+  return f.x * std::cos(u) + f.y * std::sin(u);
+}
 
 struct Extent {
   double lo, hi;
@@ -83,7 +86,8 @@ Vec3 inward(const Surface& s, Vec2 uv) {
 
 class CurvedQuadric {
  public:
-  CurvedQuadric(const QuadricFaceInput& in, PartDps& out) : in_(in), out_(out), implicit_(implicit_quadric(in.surface)) {}
+  CurvedQuadric(const QuadricFaceInput& in, PartDps& out)
+      : in_(in), out_(out), implicit_(implicit_quadric(in.surface)) {}
 
   int make() {
     if (in_.rectangle.rectangle) {
@@ -116,7 +120,8 @@ class CurvedQuadric {
 
   static std::uint8_t bit(bool on, int i) { return static_cast<std::uint8_t>(on ? 1u << i : 0u); }
 
-  /// Ends across the axis are the footprint's sides along û; a sector's straight borders are its other sides, or a bound on z.
+  /// Ends across the axis are the footprint's sides along û; a sector's straight borders are its other sides,
+  /// or a bound on z.
   bool make_cylinder_rectangle() {
     const Cylinder& cylinder = std::get<Cylinder>(in_.surface.geometry);
     const Box2 box = in_.uv_box;
@@ -124,7 +129,8 @@ class CurvedQuadric {
     const bool whole = half >= kPi - 1e-9;
     const bool* drawn = in_.rectangle.side_drawn;
     const bool by_x = !whole && half <= kSideByX;
-    if (!by_x && !whole && drawn[0] != drawn[1]) return false;  // one bit for both borders: the charts keep them apart
+    if (!by_x && !whole && drawn[0] != drawn[1])
+      return false;  // one bit for both borders: the charts keep them apart
     QuadricDp dp = dp_at(box.center());
     const bool v_with_axis = dot(dp.v, cylinder.frame.z) > 0;
     // û may run with or against u; the sides are told apart by a point.
@@ -132,11 +138,15 @@ class CurvedQuadric {
     const double h = box.size().y / 2, wide = by_x ? r * std::sin(half) : r * (1 + 1e-3);
     set_footprint(dp, {-wide, wide}, {-h, h});
     dp.z_lo = -1e-4 * r;
-    dp.z_hi = whole ? r * (2 + 1e-4) : by_x ? r * (1 - std::cos(half)) * 1.001 + 1e-6 * r : r * (1 - std::cos(half));
+    dp.z_hi = whole  ? r * (2 + 1e-4)
+              : by_x ? r * (1 - std::cos(half)) * 1.001 + 1e-6 * r
+                     : r * (1 - std::cos(half));
     const int low = v_with_axis ? 2 : 3, first = u_with_angle ? 0 : 1;
     dp.feature_sides = bit(drawn[low], 0) | bit(drawn[5 - low], 2);
-    if (by_x) dp.feature_sides |= bit(drawn[1 - first], 1) | bit(drawn[first], 3);
-    else if (!whole) dp.feature_sides |= bit(drawn[0], 5);
+    if (by_x)
+      dp.feature_sides |= bit(drawn[1 - first], 1) | bit(drawn[first], 3);
+    else if (!whole)
+      dp.feature_sides |= bit(drawn[0], 5);
     emit_dp(dp, {}, {}, true, out_);
     return true;
   }
@@ -155,7 +165,8 @@ class CurvedQuadric {
     const bool north = v1 >= kPi / 2 - 1e-9, south = v0 <= -kPi / 2 + 1e-9;
     dp.z_lo = north ? -1e-4 * r : r * (1 - std::sin(v1));
     dp.z_hi = south ? r * (2 + 1e-4) : r * (1 - std::sin(v0));
-    dp.feature_sides = bit(in_.rectangle.side_drawn[3] && !north, 4) | bit(in_.rectangle.side_drawn[2] && !south, 5);
+    dp.feature_sides =
+        bit(in_.rectangle.side_drawn[3] && !north, 4) | bit(in_.rectangle.side_drawn[2] && !south, 5);
     emit_dp(dp, {}, {}, true, out_);
     return 1;
   }
@@ -163,7 +174,8 @@ class CurvedQuadric {
   /// A cone all round between two planes across its axis.
   bool make_whole_cone() {
     const Cone& cone = std::get<Cone>(in_.surface.geometry);
-    const double sine = std::sin(cone.half_angle), cosine = std::cos(cone.half_angle), apex = -cone.radius / sine;
+    const double sine = std::sin(cone.half_angle), cosine = std::cos(cone.half_angle),
+                 apex = -cone.radius / sine;
     const double v0 = in_.uv_box.lo.y, v1 = in_.uv_box.hi.y;
     if (v0 < apex - 1e-9 * (v1 - v0) && v1 > apex + 1e-9 * (v1 - v0)) return false;  // both nappes
     // The middle, moved off the apex: any point of the nappe describes the same cone.
@@ -182,7 +194,8 @@ class CurvedQuadric {
       // At the apex itself the plane is left a hair inside it: the other nappe must not show.
       const bool tip = std::abs(v - apex) * cosine < 1e-9 * size;
       const double height = v * cosine + (tip ? (upper ? -1e-7 : 1e-7) * size : 0);
-      out_.planes.push_back(upper ? ClipPlane{-axis, height - at, drawn && !tip} : ClipPlane{axis, at - height, drawn && !tip});
+      out_.planes.push_back(upper ? ClipPlane{-axis, height - at, drawn && !tip}
+                                  : ClipPlane{axis, at - height, drawn && !tip});
     };
     add_end(v0, false, in_.rectangle.side_drawn[2]);
     add_end(v1, true, in_.rectangle.side_drawn[3]);
@@ -210,8 +223,8 @@ class CurvedQuadric {
     return emit_exact_dp(dp, pieces, reference, state, out_);
   }
 
-  /// A cone's sector in its chart lies between two straight generators: the rectangle around it reaches, at its narrow end, over the
-  /// edge of the sheet.
+  /// A cone's sector in its chart lies between two straight generators: the rectangle around it reaches, at
+  /// its narrow end, over the edge of the sheet.
   void narrow_to_sector(QuadricDp& dp, const Box2& uv) const {
     if (!std::holds_alternative<Cone>(in_.surface.geometry)) return;
     const double y0 = dp.footprint[0].y, y1 = dp.footprint[2].y;
@@ -224,18 +237,21 @@ class CurvedQuadric {
       }
       const Vec2 along = a[1] - a[0];
       if (!(std::abs(along.y) > 1e-6 * length(along))) return;
-      x[g][0] = a[0].x + along.x * (y0 - a[0].y) / along.y, x[g][1] = a[0].x + along.x * (y1 - a[0].y) / along.y;
+      x[g][0] = a[0].x + along.x * (y0 - a[0].y) / along.y,
+      x[g][1] = a[0].x + along.x * (y1 - a[0].y) / along.y;
     }
     const double margin = 1e-3 * (dp.footprint[1].x - dp.footprint[0].x);
     double lo[2], hi[2];
-    for (int k = 0; k < 2; ++k) lo[k] = std::min(x[0][k], x[1][k]) - margin, hi[k] = std::max(x[0][k], x[1][k]) + margin;
+    for (int k = 0; k < 2; ++k)
+      lo[k] = std::min(x[0][k], x[1][k]) - margin, hi[k] = std::max(x[0][k], x[1][k]) + margin;
     const bool crossed = (x[0][0] < x[1][0]) != (x[0][1] < x[1][1]);
     if (crossed) return;  // the apex is within: the rectangle ends there
     dp.footprint = {Vec2{lo[0], y0}, Vec2{hi[0], y0}, Vec2{hi[1], y1}, Vec2{lo[1], y1}};
   }
 
   /// A point of the chart, as far from the trims as a few tries give, and whether it is inside the face.
-  std::pair<Vec2, bool> reference_in(const Box2& uv, const ChartProjector& chart, const ChartPieces& pieces) const {
+  std::pair<Vec2, bool> reference_in(const Box2& uv, const ChartProjector& chart,
+                                     const ChartPieces& pieces) const {
     Vec3 best{};
     double most = -1;
     const int tries = pieces.empty() ? 1 : 5;
@@ -275,10 +291,14 @@ class CurvedQuadric {
     const double r = sphere.radius;
     const Vec2 mid = in_.uv_box.center();
     const Vec3 out = normalized(point_at(in_.surface, mid.x, mid.y) - sphere.frame.origin);
-    if (extent_along(in_.surface, in_.uv_box, sphere.frame.origin, out).lo >= 0.3 * r) return make_chart(dp_at(mid), in_.uv_box);
+    if (extent_along(in_.surface, in_.uv_box, sphere.frame.origin, out).lo >= 0.3 * r)
+      return make_chart(dp_at(mid), in_.uv_box);
     int made = 0;
     for (int side = 0; side < 6; ++side) {
-      const Vec3 axis = (side / 2 == 0 ? sphere.frame.x : side / 2 == 1 ? sphere.frame.y : sphere.frame.z) * (side % 2 ? -1.0 : 1.0);
+      const Vec3 axis = (side / 2 == 0   ? sphere.frame.x
+                         : side / 2 == 1 ? sphere.frame.y
+                                         : sphere.frame.z) *
+                        (side % 2 ? -1.0 : 1.0);
       made += make_cube_chart(sphere, axis);
     }
     return made;
@@ -290,10 +310,12 @@ class CurvedQuadric {
     QuadricDp dp = quadric_dp_at(implicit_, sphere.frame.origin + axis * r, -axis);
     dp.exact = true, dp.face = in_.face_index, dp.cell = in_.uv_box;
     const Vec2 mid = in_.uv_box.center();
-    const bool normal_outward = dot(surface_normal(in_.surface, mid), point_at(in_.surface, mid.x, mid.y) - sphere.frame.origin) > 0;
+    const bool normal_outward =
+        dot(surface_normal(in_.surface, mid), point_at(in_.surface, mid.x, mid.y) - sphere.frame.origin) > 0;
     dp.flipped = normal_outward == in_.outward_is_normal;
     set_footprint(dp, {-wide, wide}, {-wide, wide});
-    dp.z_lo = -1e-4 * r, dp.z_hi = r * 0.6;  // the cube's corners reach 0.423 r; the footprint's rim lies beyond
+    dp.z_lo = -1e-4 * r,
+    dp.z_hi = r * 0.6;  // the cube's corners reach 0.423 r; the footprint's rim lies beyond
     ChartProjector chart(dp);
     ChartPieces pieces;
     for (const FaceLoop& loop : in_.boundary.loops)
@@ -329,7 +351,8 @@ ImplicitQuadric implicit_quadric(const Surface& surface) {
     q.constant = dot(origin, a);
   };
   const auto axis_form = [&](const Vec3& a, double diagonal, double outer) {
-    q.axx_ayy_azz = {diagonal + outer * a.x * a.x, diagonal + outer * a.y * a.y, diagonal + outer * a.z * a.z};
+    q.axx_ayy_azz = {diagonal + outer * a.x * a.x, diagonal + outer * a.y * a.y,
+                     diagonal + outer * a.z * a.z};
     q.ayz_axz_axy = {outer * a.y * a.z, outer * a.x * a.z, outer * a.x * a.y};
   };
   if (const auto* c = std::get_if<Cylinder>(&surface.geometry)) {
@@ -387,10 +410,13 @@ QuadricDp quadric_dp_at(const ImplicitQuadric& q, const Vec3& p, const Vec3& n) 
   dp.lambda_u = k1;
   dp.lambda_v = std::abs(k2) <= 1e-15 * scale ? 0 : k2;
   const auto clean = [&](double x) { return std::abs(x) <= 1e-15 * scale ? 0 : x; };
-  dp.a = clean(-2 * form(dp.u, n) / g), dp.b = clean(-2 * form(dp.v, n) / g), dp.c = clean(-2 * form(n, n) / g);
+  dp.a = clean(-2 * form(dp.u, n) / g), dp.b = clean(-2 * form(dp.v, n) / g),
+  dp.c = clean(-2 * form(n, n) / g);
   return dp;
 }
 
-int make_curved_quadric_face(const QuadricFaceInput& in, PartDps& out) { return CurvedQuadric(in, out).make(); }
+int make_curved_quadric_face(const QuadricFaceInput& in, PartDps& out) {
+  return CurvedQuadric(in, out).make();
+}
 
 }  // namespace dupin

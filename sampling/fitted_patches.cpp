@@ -17,9 +17,12 @@ constexpr double kShareOfTolerance = 0.1;
 
 using Matrix = std::array<std::array<double, kNodes>, kNodes>;
 
-double node(int i) { return 0.5 - 0.5 * std::cos(std::numbers::pi * i / kDegree); }
+double node(int i) {
+  return 0.5 - 0.5 * std::cos(std::numbers::pi * i / kDegree);
+}
 
-/// Takes values at the nodes to Bernstein coefficients: the inverse of the collocation matrix, by Gauss–Jordan.
+/// Takes values at the nodes to Bernstein coefficients: the inverse of the collocation matrix, by
+/// Gauss–Jordan.
 Matrix make_interpolation() {
   std::array<std::array<double, 2 * kNodes>, kNodes> m{};
   const auto binomial = bernstein::binomials(kDegree);
@@ -47,7 +50,9 @@ Matrix make_interpolation() {
   return result;
 }
 
-Vec2 at(const Box2& box, double s, double t) { return {box.lo.x + box.size().x * s, box.lo.y + box.size().y * t}; }
+Vec2 at(const Box2& box, double s, double t) {
+  return {box.lo.x + box.size().x * s, box.lo.y + box.size().y * t};
+}
 
 BezierPatch interpolate(const Surface& surface, const Box2& box) {
   static const Matrix interpolation = make_interpolation();
@@ -74,7 +79,8 @@ BezierPatch interpolate(const Surface& surface, const Box2& box) {
 
 Vec3 patch_normal(const BezierPatch& patch, double s, double t) {
   constexpr double h = 1e-4;
-  return normalized(cross(point_at(patch, s + h, t) - point_at(patch, s - h, t), point_at(patch, s, t + h) - point_at(patch, s, t - h)));
+  return normalized(cross(point_at(patch, s + h, t) - point_at(patch, s - h, t),
+                          point_at(patch, s, t + h) - point_at(patch, s, t - h)));
 }
 
 class Fitter {
@@ -88,7 +94,8 @@ class Fitter {
       if (!std::isfinite(pole.x + pole.y + pole.z)) return false;
     measure(box, fitted);
     const double allowed = tolerance_.at(poles_box(fitted.patch)) * kShareOfTolerance;
-    const bool good = fitted.position_error <= allowed && fitted.normal_error <= normal_tolerance_ * kShareOfTolerance;
+    const bool good =
+        fitted.position_error <= allowed && fitted.normal_error <= normal_tolerance_ * kShareOfTolerance;
     if (good || std::isinf(allowed) || depth >= kMaxHalvings) {
       patches.push_back(std::move(fitted));
       return true;
@@ -111,9 +118,12 @@ class Fitter {
         const double s = (i + 0.37) / (kChecks - 0.26), t = (j + 0.37) / (kChecks - 0.26);
         const Vec2 uv = at(box, s, t);
         const SurfaceJet jet = evaluate(surface_, uv.x, uv.y, 1);
-        fitted.position_error = std::max(fitted.position_error, 2 * distance(jet.p, point_at(fitted.patch, s, t)));
+        fitted.position_error =
+            std::max(fitted.position_error, 2 * distance(jet.p, point_at(fitted.patch, s, t)));
         const Vec3 n = normalized(cross(jet.pu, jet.pv));
-        if (length(n) > 0.5) fitted.normal_error = std::max(fitted.normal_error, 2 * length(cross(n, patch_normal(fitted.patch, s, t))));
+        if (length(n) > 0.5)
+          fitted.normal_error =
+              std::max(fitted.normal_error, 2 * length(cross(n, patch_normal(fitted.patch, s, t))));
       }
   }
   const Surface& surface_;
@@ -132,8 +142,8 @@ std::vector<Box2> smooth_pieces(const Surface& surface, const Box2& region) {
 
 }  // namespace
 
-std::vector<FittedPatch> fitted_patches(const Surface& surface, const Box2& region, const ToleranceField& tolerance,
-                                        double normal_tolerance) {
+std::vector<FittedPatch> fitted_patches(const Surface& surface, const Box2& region,
+                                        const ToleranceField& tolerance, double normal_tolerance) {
   Fitter fitter(surface, tolerance, normal_tolerance);
   for (const Box2& piece : smooth_pieces(surface, region))
     if (!fitter.fit(piece, 0)) return {};

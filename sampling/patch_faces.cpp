@@ -32,12 +32,18 @@ struct Cell {
   int depth = 0;
 };
 
-Box2 shifted(const Box2& box, double du, double dv) { return {box.lo + Vec2{du, dv}, box.hi + Vec2{du, dv}}; }
+Box2 shifted(const Box2& box, double du, double dv) {
+  return {box.lo + Vec2{du, dv}, box.hi + Vec2{du, dv}};
+}
 
 class PatchFace {
  public:
   PatchFace(const PatchFaceInput& in, PartDps& out)
-      : in_(in), out_(out), surface_(in.part.surfaces[in.face.surface]), period_u_(period_u(surface_)), period_v_(period_v(surface_)) {
+      : in_(in),
+        out_(out),
+        surface_(in.part.surfaces[in.face.surface]),
+        period_u_(period_u(surface_)),
+        period_v_(period_v(surface_)) {
     for (const Loop& loop : in.face.loops)
       for (const Trim& trim : loop)
         if (is_inner_seam(in.face, trim)) note_seam(trim);
@@ -86,7 +92,8 @@ class PatchFace {
   void filter_arcs(Cell& cell, const Box2& uv) const {
     std::erase_if(cell.arcs, [&](const FaceArc* arc) { return !is_near(*arc, uv, 1.5 * kMostMargin); });
     if (cell.known) return;
-    cell.known = std::none_of(cell.arcs.begin(), cell.arcs.end(), [&](const FaceArc* arc) { return is_near(*arc, uv, 1e-3); });
+    cell.known = std::none_of(cell.arcs.begin(), cell.arcs.end(),
+                              [&](const FaceArc* arc) { return is_near(*arc, uv, 1e-3); });
     if (cell.known) cell.inside = uv_inside(in_.boundary, uv.center());
   }
 
@@ -101,10 +108,12 @@ class PatchFace {
     allowed_ = allowed;
     const bool speck = box.diagonal() <= allowed || cell.depth >= kMaxDepth;
     if (box.diagonal() <= kSpeck * allowed) return emit_speck(cell, uv, box, {});
-    CellFit fit = fitter_.fit(cell.patch, tolerance - fitted_position_, in_.normal_tolerance - fitted_normal_);
+    CellFit fit =
+        fitter_.fit(cell.patch, tolerance - fitted_position_, in_.normal_tolerance - fitted_normal_);
     if (fit.valid && emit(cell, uv, fit)) return;
     if (fit.valid && widen_margins(fit)) {
-      CellFit wider = fitter_.fit(cell.patch, tolerance - fitted_position_, in_.normal_tolerance - fitted_normal_, fit.margins);
+      CellFit wider = fitter_.fit(cell.patch, tolerance - fitted_position_,
+                                  in_.normal_tolerance - fitted_normal_, fit.margins);
       if (wider.valid && emit(cell, uv, wider)) return;
     }
     if (speck) return emit_speck(cell, uv, box, fit);
@@ -138,20 +147,26 @@ class PatchFace {
     return cell.arcs.empty() && emit_bordered(cell, fit);
   }
 
-  /// Whether the cell's side lies on the face's own border, where trims end it: there it need not match a neighbour.
+  /// Whether the cell's side lies on the face's own border, where trims end it: there it need not match a
+  /// neighbour.
   bool on_border(int side, const Box2& uv) const {
     const Box2& box = in_.boundary.uv_box;
     if (seam_[side] || in_.boundary.loops.empty()) return false;
     const Vec2 eps = box.size() * 1e-9;
     switch (side) {
-      case 0: return uv.lo.y <= box.lo.y + eps.y;
-      case 1: return uv.hi.x >= box.hi.x - eps.x;
-      case 2: return uv.hi.y >= box.hi.y - eps.y;
-      default: return uv.lo.x <= box.lo.x + eps.x;
+      case 0:
+        return uv.lo.y <= box.lo.y + eps.y;
+      case 1:
+        return uv.hi.x >= box.hi.x - eps.x;
+      case 2:
+        return uv.hi.y >= box.hi.y - eps.y;
+      default:
+        return uv.lo.x <= box.lo.x + eps.x;
     }
   }
 
-  /// Where a curved side asked for more room than the certificate had: as much as it needs, if that is not too much.
+  /// Where a curved side asked for more room than the certificate had: as much as it needs, if that is not
+  /// too much.
   static bool widen_margins(CellFit& fit) {
     bool wider = false;
     for (int k = 0; k < 4; ++k) {
@@ -168,10 +183,11 @@ class PatchFace {
     Vec2 point, out;  ///< out: unit, outwards
   };
 
-  /// The convex quadrilateral of the four chords, each moved outwards until its side of the cell, and a little overlap with the
-  /// neighbour, lie within; not farther than the certificate reaches.
+  /// The convex quadrilateral of the four chords, each moved outwards until its side of the cell, and a
+  /// little overlap with the neighbour, lie within; not farther than the certificate reaches.
   bool make_footprint(const Box2& uv, CellFit& fit) const {
-    const Vec2 c[4] = {fit.border[0].front(), fit.border[1].front(), fit.border[2].back(), fit.border[3].back()};
+    const Vec2 c[4] = {fit.border[0].front(), fit.border[1].front(), fit.border[2].back(),
+                       fit.border[3].back()};
     const double size = std::max(length(c[2] - c[0]), length(c[3] - c[1]));
     SideLine lines[4];
     bool reached = true;
@@ -187,11 +203,13 @@ class PatchFace {
       const double wanted = 4 * fit.bound + 1e-4 * size;
       double overlap_width = wanted;
       fit.margin_needed[k] = 0;
-      if (point) overlap_width = 0;
+      if (point)
+        overlap_width = 0;
       else if (!on_border(k, uv)) {
         double own = 0;
         for (Vec2 p : fit.border[k]) own = std::min(own, dot(p - a, out));
-        fit.margin_needed[k] = fit.margins.side[k] * (bulge + wanted - own) / std::max(reach - own, 1e-3 * size * fit.margins.side[k]);
+        fit.margin_needed[k] = fit.margins.side[k] * (bulge + wanted - own) /
+                               std::max(reach - own, 1e-3 * size * fit.margins.side[k]);
         if (reach - bulge < fit.bound + 1e-5 * size) reached = false;
         overlap_width = std::min(wanted, reach - bulge);
       }
@@ -213,7 +231,8 @@ class PatchFace {
 
   static bool is_convex(const std::array<Vec2, 4>& q, double size) {
     for (int k = 0; k < 4; ++k)
-      if (!(cross(q[(k + 1) % 4] - q[k], q[(k + 2) % 4] - q[(k + 1) % 4]) >= -1e-12 * size * size)) return false;
+      if (!(cross(q[(k + 1) % 4] - q[k], q[(k + 2) % 4] - q[(k + 1) % 4]) >= -1e-12 * size * size))
+        return false;
     return true;
   }
 
@@ -252,11 +271,13 @@ class PatchFace {
     return true;
   }
 
-  /// A cell whose sides are too curved for straight ones: its border, half-way out to where the certificate reaches, as pieces.
+  /// A cell whose sides are too curved for straight ones: its border, half-way out to where the certificate
+  /// reaches, as pieces.
   bool emit_bordered(const Cell& cell, CellFit& fit) {
     constexpr double m = kCellMargin / 2;
     const CollapsedSides collapsed = collapsed_sides(cell.patch);
-    const double s0 = collapsed.u0 ? 0 : -m, s1 = collapsed.u1 ? 1 : 1 + m, t0 = collapsed.v0 ? 0 : -m, t1 = collapsed.v1 ? 1 : 1 + m;
+    const double s0 = collapsed.u0 ? 0 : -m, s1 = collapsed.u1 ? 1 : 1 + m, t0 = collapsed.v0 ? 0 : -m,
+                 t1 = collapsed.v1 ? 1 : 1 + m;
     ChartProjector chart(fit.dp);
     auto at = [&](double s, double t) { return chart.to_chart(point_at(cell.patch, s, t)); };
     ChartPieces pieces;
@@ -264,13 +285,19 @@ class PatchFace {
     for (int k = 0; k < 4; ++k) {
       auto on_side = [&](double f) {
         switch (k) {
-          case 0: return at(s0 + (s1 - s0) * f, t0);
-          case 1: return at(s1, t0 + (t1 - t0) * f);
-          case 2: return at(s1 + (s0 - s1) * f, t1);
-          default: return at(s0, t1 + (t0 - t1) * f);
+          case 0:
+            return at(s0 + (s1 - s0) * f, t0);
+          case 1:
+            return at(s1, t0 + (t1 - t0) * f);
+          case 2:
+            return at(s1 + (s0 - s1) * f, t1);
+          default:
+            return at(s0, t1 + (t0 - t1) * f);
         }
       };
-      if ((k == 0 && collapsed.v0) || (k == 1 && collapsed.u1) || (k == 2 && collapsed.v1) || (k == 3 && collapsed.u0)) continue;
+      if ((k == 0 && collapsed.v0) || (k == 1 && collapsed.u1) || (k == 2 && collapsed.v1) ||
+          (k == 3 && collapsed.u0))
+        continue;
       if (!add_side(on_side, inner_distance(cell, k, chart), pieces, box)) return false;
     }
     const Vec2 margin = box.size() * 1e-4;
@@ -282,7 +309,8 @@ class PatchFace {
   /// How far the widened side is from the cell's own, at its middle: what a piece may deviate by a part of.
   static double inner_distance(const Cell& cell, int side, const ChartProjector& chart) {
     constexpr double m = kCellMargin / 2;
-    const Vec2 own[4] = {{0.5, 0}, {1, 0.5}, {0.5, 1}, {0, 0.5}}, wide[4] = {{0.5, -m}, {1 + m, 0.5}, {0.5, 1 + m}, {-m, 0.5}};
+    const Vec2 own[4] = {{0.5, 0}, {1, 0.5}, {0.5, 1}, {0, 0.5}},
+               wide[4] = {{0.5, -m}, {1 + m, 0.5}, {0.5, 1 + m}, {-m, 0.5}};
     return length(chart.to_chart(point_at(cell.patch, own[side].x, own[side].y)) -
                   chart.to_chart(point_at(cell.patch, wide[side].x, wide[side].y)));
   }
@@ -295,12 +323,15 @@ class PatchFace {
     if (std::max(length(quadratic(0.25) - q1), length(quadratic(0.75) - q3)) > 0.3 * room) return false;
     for (Vec2 p : {a, p1, b}) box.add(p);
     const Vec2 chord = b - a;
-    if (std::abs(cross(chord, p1 - a)) <= 1e-6 * dot(chord, chord)) pieces.lines.push_back({a, b, false});
-    else pieces.arcs.push_back({a, p1, b, 1, false});
+    if (std::abs(cross(chord, p1 - a)) <= 1e-6 * dot(chord, chord))
+      pieces.lines.push_back({a, b, false});
+    else
+      pieces.arcs.push_back({a, p1, b, 1, false});
     return true;
   }
 
-  /// Smaller than the tolerance, and still no quadric could be proved right (a singular corner): a flat piece will do.
+  /// Smaller than the tolerance, and still no quadric could be proved right (a singular corner): a flat piece
+  /// will do.
   void emit_speck(const Cell& cell, const Box2& uv, const Box3& box, const CellFit& fit) {
     QuadricDp dp;
     const double size = box.diagonal();
@@ -332,7 +363,7 @@ class PatchFace {
   BezierPatch root_;
   CellFitter fitter_;
   double fitted_position_ = 0, fitted_normal_ = 0;  ///< what an interpolated patch is off already
-  double allowed_ = 0;  ///< the tolerance where the present cell is
+  double allowed_ = 0;                              ///< the tolerance where the present cell is
   int made_ = 0;
 };
 
@@ -340,7 +371,8 @@ class PatchFace {
 std::vector<FittedPatch> patches_of(const PatchFaceInput& in, PatchFaceResult& result) {
   const Surface& surface = in.part.surfaces[in.face.surface];
   std::vector<FittedPatch> patches;
-  for (BezierPatch& patch : bezier_patches(surface, in.boundary.uv_box)) patches.push_back({std::move(patch), 0, 0});
+  for (BezierPatch& patch : bezier_patches(surface, in.boundary.uv_box))
+    patches.push_back({std::move(patch), 0, 0});
   if (!patches.empty()) return patches;
   result.rational = false;
   patches = fitted_patches(surface, in.boundary.uv_box, in.tolerance, in.normal_tolerance);
@@ -359,7 +391,8 @@ PatchFaceResult make_patch_face(const PatchFaceInput& in, PartDps& out) {
   // In parallel over groups of patches; joined in their order, so that the threads' number shows nowhere.
   parallel_for(tasks, [&](std::size_t t) {
     PatchFace face(in, parts[t]);
-    for (std::size_t i = t * kPatchesPerTask; i < std::min(patches.size(), (t + 1) * kPatchesPerTask); ++i) face.divide_patch(patches[i]);
+    for (std::size_t i = t * kPatchesPerTask; i < std::min(patches.size(), (t + 1) * kPatchesPerTask); ++i)
+      face.divide_patch(patches[i]);
     made[t] = face.made();
   });
   for (std::size_t t = 0; t < tasks; ++t) {

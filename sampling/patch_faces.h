@@ -19,7 +19,8 @@ struct PatchFaceInput {
 
 struct PatchFaceResult {
   int dps = 0;
-  bool rational = true;  ///< false: the surface has no Bézier form and was interpolated (its bounds include the sampled error)
+  bool rational = true;  ///< false: the surface has no Bézier form and was interpolated (its bounds include
+                         ///< the sampled error)
   bool defined = false;  ///< whether such an interpolation was possible
 };
 

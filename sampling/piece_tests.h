@@ -6,8 +6,8 @@
 
 namespace dupin {
 
-/// Whether the segment from the reference r to p crosses the segment a–b; each end point's side is decided by one
-/// expression of that point alone, so chains that share end points are counted consistently.
+/// Whether the segment from the reference r to p crosses the segment a–b; each end point's side is decided by
+/// one expression of that point alone, so chains that share end points are counted consistently.
 inline bool crosses(Vec2 r, Vec2 p, Vec2 a, Vec2 b) {
   const Vec2 d = p - r;
   const bool side_a = cross(d, a - r) > 0, side_b = cross(d, b - r) > 0;

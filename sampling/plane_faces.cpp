@@ -1,5 +1,5 @@
-// Plane faces: the DP is the plane, its footprint the outer loop if that is a convex quadrilateral, else the smallest
-// rectangle along one of its edges; everything else is boundary pieces.
+// Plane faces: the DP is the plane, its footprint the outer loop if that is a convex quadrilateral, else the
+// smallest rectangle along one of its edges; everything else is boundary pieces.
 #include <algorithm>
 #include <cmath>
 
@@ -19,21 +19,25 @@ struct Corner {
 };
 
 void add_hull(const FaceArc& arc, const QuadricDp& frame, Box2& box) {
-  auto add = [&](const Vec3& p) { box.add({dot(p - frame.origin, frame.u), dot(p - frame.origin, frame.v)}); };
+  auto add = [&](const Vec3& p) {
+    box.add({dot(p - frame.origin, frame.u), dot(p - frame.origin, frame.v)});
+  };
   if (arc.arc.line) return add(arc.arc.p0), add(arc.arc.p2);
   const Vec3 mid = (arc.arc.p0 + arc.arc.p2) * 0.5, rise = (arc.arc.p1 - mid) * (arc.arc.w / (1 + arc.arc.w));
   add(arc.arc.p0), add(arc.arc.p2), add(arc.arc.p0 + rise), add(arc.arc.p2 + rise);
 }
 
 void add_ellipse(const WholeEllipse& e, const QuadricDp& frame, Box2& box) {
-  const double rx = std::hypot(dot(e.x, frame.u), dot(e.y, frame.u)), ry = std::hypot(dot(e.x, frame.v), dot(e.y, frame.v));
+  const double rx = std::hypot(dot(e.x, frame.u), dot(e.y, frame.u)),
+               ry = std::hypot(dot(e.x, frame.v), dot(e.y, frame.v));
   const Vec2 c{dot(e.center - frame.origin, frame.u), dot(e.center - frame.origin, frame.v)};
   box.add(c - Vec2{rx, ry}), box.add(c + Vec2{rx, ry});
 }
 
 Box2 loop_box(const FaceLoop& loop, const QuadricDp& frame) {
   Box2 box;
-  if (loop.whole_ellipse) add_ellipse(loop.ellipse, frame, box);
+  if (loop.whole_ellipse)
+    add_ellipse(loop.ellipse, frame, box);
   else
     for (const FaceArc& arc : loop.arcs) add_hull(arc, frame, box);
   return box;
@@ -47,7 +51,8 @@ std::vector<Vec3> straight_directions(const FaceLoop& loop) {
     const double l = length(d);
     if (arc.arc.line && l > 0) edges.push_back({l, d / l});
   }
-  std::stable_sort(edges.begin(), edges.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::stable_sort(edges.begin(), edges.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<Vec3> directions;
   for (const auto& [l, d] : edges) {
     const bool known = std::any_of(directions.begin(), directions.end(), [&](const Vec3& k) {
@@ -73,8 +78,10 @@ std::vector<Corner> polygon_corners(const FaceLoop& loop, const ChartProjector& 
     const Corner &before = corners[(i + n - 1) % n], &after = corners[(i + 1) % n];
     const Vec2 a = corners[i].p - before.p, b = after.p - corners[i].p;
     const bool straight = std::abs(cross(a, b)) <= kCollinear * (dot(a, a) + dot(b, b)) && dot(a, b) >= 0;
-    if (straight && before.feature == corners[i].feature) corners.erase(corners.begin() + static_cast<std::ptrdiff_t>(i));
-    else ++i;
+    if (straight && before.feature == corners[i].feature)
+      corners.erase(corners.begin() + static_cast<std::ptrdiff_t>(i));
+    else
+      ++i;
   }
   return corners;
 }
@@ -83,7 +90,8 @@ std::vector<Corner> polygon_corners(const FaceLoop& loop, const ChartProjector& 
 bool as_footprint(std::vector<Corner> corners, QuadricDp& dp) {
   if (corners.size() != 3 && corners.size() != 4) return false;
   double area = 0;
-  for (std::size_t i = 0; i < corners.size(); ++i) area += cross(corners[i].p, corners[(i + 1) % corners.size()].p);
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    area += cross(corners[i].p, corners[(i + 1) % corners.size()].p);
   if (area < 0) {
     std::reverse(corners.begin(), corners.end());
     const bool first = corners.front().feature;
@@ -130,7 +138,8 @@ void set_rectangle(QuadricDp& dp, const Box2& box) {
   dp.feature_sides = 0;
 }
 
-/// The plane's frame, x along the edge that gives the smallest rectangle, the origin at that rectangle's centre.
+/// The plane's frame, x along the edge that gives the smallest rectangle, the origin at that rectangle's
+/// centre.
 QuadricDp plane_frame(const FaceLoop& outer, const Vec3& normal, const Vec3& fallback_direction) {
   QuadricDp best;
   double least = 1e300;
@@ -195,7 +204,8 @@ int make_plane_face(const QuadricFaceInput& in, PartDps& out) {
   ChartPieces pieces;
   for (std::size_t i = 0; i < loops.size(); ++i) {
     if (i == outer && outer_is_footprint) continue;
-    if (loops[i].whole_ellipse) chart.add(loops[i].ellipse, pieces);
+    if (loops[i].whole_ellipse)
+      chart.add(loops[i].ellipse, pieces);
     else
       for (const FaceArc& arc : loops[i].arcs)
         if (chart.add(arc, pieces)) dp.bound = std::max(dp.bound, arc.arc.deviation);

@@ -9,8 +9,9 @@
 
 namespace dupin {
 
-/// The DP of the quadric pᵀAp + 2·linear·p + constant = 0 at a point p of it, n towards the side to which it bends (the gradient's
-/// side, or the other where `flip`). Bounds, footprint and region are left to the caller.
+/// The DP of the quadric pᵀAp + 2·linear·p + constant = 0 at a point p of it, n towards the side to which it
+/// bends (the gradient's side, or the other where `flip`). Bounds, footprint and region are left to the
+/// caller.
 struct ImplicitQuadric {
   Vec3 axx_ayy_azz, ayz_axz_axy;  ///< the symmetric matrix A
   Vec3 linear;
@@ -26,9 +27,9 @@ struct QuadricFaceInput {
   const Part& part;
   const Face& face;
   std::uint32_t face_index;
-  const Surface& surface;         ///< plane, cylinder, cone or sphere
+  const Surface& surface;  ///< plane, cylinder, cone or sphere
   const FaceBoundary& boundary;
-  Box2 uv_box;                    ///< on `surface`, holding the face
+  Box2 uv_box;  ///< on `surface`, holding the face
   /// The face is exactly `uv_box`, bounded as this says (never for a plane).
   UvRectangle rectangle;
   /// Whether a point of the surface is inside the face.

@@ -19,7 +19,8 @@ bool pieces_contain(const PartDps& part, const QuadricDp& dp, Vec2 p) {
     inside ^= crosses(dp.reference, p, piece.p0, piece.p2);
     inside ^= in_bulge(piece, p);
   }
-  for (std::uint32_t i = 0; i < dp.ellipses; ++i) inside ^= in_ellipse(part.ellipses[dp.first_ellipse + i], p);
+  for (std::uint32_t i = 0; i < dp.ellipses; ++i)
+    inside ^= in_ellipse(part.ellipses[dp.first_ellipse + i], p);
   return inside;
 }
 
@@ -38,8 +39,10 @@ bool region_contains(const PartDps& part, const QuadricDp& dp, const Vec3& p) {
 }
 
 void append(const PartDps& from, PartDps& to) {
-  const auto planes = static_cast<std::uint32_t>(to.planes.size()), lines = static_cast<std::uint32_t>(to.lines.size());
-  const auto arcs = static_cast<std::uint32_t>(to.arcs.size()), ellipses = static_cast<std::uint32_t>(to.ellipses.size());
+  const auto planes = static_cast<std::uint32_t>(to.planes.size()),
+             lines = static_cast<std::uint32_t>(to.lines.size());
+  const auto arcs = static_cast<std::uint32_t>(to.arcs.size()),
+             ellipses = static_cast<std::uint32_t>(to.ellipses.size());
   to.dps.reserve(to.dps.size() + from.dps.size());
   for (QuadricDp dp : from.dps) {
     dp.first_plane += planes, dp.first_line += lines, dp.first_arc += arcs, dp.first_ellipse += ellipses;

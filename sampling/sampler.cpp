@@ -14,8 +14,8 @@
 namespace dupin {
 namespace {
 
-/// Edges are approximated to this part of the tolerance that holds for faces: both faces of an edge follow the same chain, and what
-/// differs from the file's curve is the picture's outline.
+/// Edges are approximated to this part of the tolerance that holds for faces: both faces of an edge follow
+/// the same chain, and what differs from the file's curve is the picture's outline.
 constexpr double kEdgeTolerance = 0.02;
 constexpr double kTwoPi = 6.28318530717958647692;
 
@@ -55,7 +55,8 @@ bool inside_with_period(const FaceBoundary& boundary, Vec2 uv) {
   return false;
 }
 
-/// A recognised surface's parameters for a region of the spline that it was recognised in, by a grid of points.
+/// A recognised surface's parameters for a region of the spline that it was recognised in, by a grid of
+/// points.
 class Recast {
  public:
   Recast(const Surface& spline, const Surface& recognized, const Box2& uv_box) {
@@ -70,12 +71,14 @@ class Recast {
         // The region's middle lies at u = π, opposite the seam.
         if (const auto q = invert(recognized, p, {kTwoPi / 2, 0})) box_.add(*q);
       }
-    // Between the grid's points the region may reach a little farther; a whole turn's first and last points are the same angle.
+    // Between the grid's points the region may reach a little farther; a whole turn's first and last points
+    // are the same angle.
     const Vec2 margin = box_.size() * (1.0 / kSteps);
     box_ = {box_.lo - margin, box_.hi + margin};
     if (std::holds_alternative<Plane>(recognized.geometry)) return;
     const bool whole = box_.size().x > 0.85 * kTwoPi;
-    box_.lo.x = whole ? 0 : std::max(box_.lo.x, 0.0), box_.hi.x = whole ? kTwoPi : std::min(box_.hi.x, kTwoPi);
+    box_.lo.x = whole ? 0 : std::max(box_.lo.x, 0.0),
+    box_.hi.x = whole ? kTwoPi : std::min(box_.hi.x, kTwoPi);
     if (std::holds_alternative<Sphere>(recognized.geometry))
       box_.lo.y = std::max(box_.lo.y, -kTwoPi / 4), box_.hi.y = std::min(box_.hi.y, kTwoPi / 4);
   }
@@ -108,16 +111,19 @@ class PartSampler {
     const Surface& surface = part_.surfaces[face.surface];
     if (is_quadric(surface)) return sample_quadric(index, face, surface, out);
     const FaceBoundary boundary = face_boundary(part_, face, chains_, true);
-    if (face.recognized && is_quadric(face.recognized->surface)) return sample_recognized(index, face, boundary, out);
+    if (face.recognized && is_quadric(face.recognized->surface))
+      return sample_recognized(index, face, boundary, out);
     const PatchFaceInput in{part_, face, index, boundary, field_, options_.normal_tolerance};
     const PatchFaceResult result = make_patch_face(in, out.dps);
-    if (!result.rational && !result.defined) out.failure = "its " + std::string(kind_name(surface)) + " surface is not defined everywhere";
+    if (!result.rational && !result.defined)
+      out.failure = "its " + std::string(kind_name(surface)) + " surface is not defined everywhere";
   }
 
  private:
-  /// A spline that is a quadric: its DPs are the quadric, its trims come from their curves in space, and whether a point is inside
-  /// is asked of the spline's own parameters.
-  void sample_recognized(std::uint32_t index, const Face& face, const FaceBoundary& boundary, FaceDps& out) const {
+  /// A spline that is a quadric: its DPs are the quadric, its trims come from their curves in space, and
+  /// whether a point is inside is asked of the spline's own parameters.
+  void sample_recognized(std::uint32_t index, const Face& face, const FaceBoundary& boundary,
+                         FaceDps& out) const {
     const RecognizedSurface& recognized = *face.recognized;
     const Surface& spline = part_.surfaces[face.surface];
     const Recast recast(spline, recognized.surface, boundary.uv_box);
@@ -130,12 +136,18 @@ class PartSampler {
       // The quadric goes on where the spline ends.
       // Newton's method may stall at a pole: then the nearest point known has to do.
       const double off = distance(point_at(spline, uv.x, uv.y), p);
-      if (off > std::max(found ? 0 : recast.spacing(), 1e-6 * part_.box.diagonal() + 10 * recognized.deviation)) return false;
-      return uv_inside(boundary, {std::clamp(uv.x, box.lo.x + margin.x, box.hi.x - margin.x), std::clamp(uv.y, box.lo.y + margin.y, box.hi.y - margin.y)});
+      if (off >
+          std::max(found ? 0 : recast.spacing(), 1e-6 * part_.box.diagonal() + 10 * recognized.deviation))
+        return false;
+      return uv_inside(boundary, {std::clamp(uv.x, box.lo.x + margin.x, box.hi.x - margin.x),
+                                  std::clamp(uv.y, box.lo.y + margin.y, box.hi.y - margin.y)});
     };
-    const QuadricFaceInput in{part_, face, index, recognized.surface, boundary, recast.box(), {}, inside, !face.reversed};
-    if (std::holds_alternative<Plane>(recognized.surface.geometry)) make_plane_face(in, out.dps);
-    else make_curved_quadric_face(in, out.dps);
+    const QuadricFaceInput in{part_,        face, index,  recognized.surface, boundary,
+                              recast.box(), {},   inside, !face.reversed};
+    if (std::holds_alternative<Plane>(recognized.surface.geometry))
+      make_plane_face(in, out.dps);
+    else
+      make_curved_quadric_face(in, out.dps);
     for (QuadricDp& dp : out.dps.dps) {
       dp.bound = std::hypot(dp.bound, recognized.deviation);
       dp.normal_bound = recognized.normal_deviation;
@@ -149,8 +161,10 @@ class PartSampler {
     auto inside = [&](const Vec3& p) { return inside_with_period(boundary, parameters_on(surface, p)); };
     QuadricFaceInput in{part_, face, index, surface, boundary, boundary.uv_box, {}, inside, !face.reversed};
     if (plane) {
-      if (boundary.loops.empty()) out.failure = "its plane has no boundary";
-      else make_plane_face(in, out.dps);
+      if (boundary.loops.empty())
+        out.failure = "its plane has no boundary";
+      else
+        make_plane_face(in, out.dps);
       return;
     }
     in.rectangle = uv_rectangle(part_, face, boundary);
@@ -166,7 +180,8 @@ class PartSampler {
 }  // namespace
 
 Result<DpScene> sample_quadric_dps(const Model& model, const SamplingOptions& options) {
-  if (!options.camera && !(options.tolerance > 0)) return {StatusCode::invalid_argument, "the tolerance must be above 0"};
+  if (!options.camera && !(options.tolerance > 0))
+    return {StatusCode::invalid_argument, "the tolerance must be above 0"};
   DpScene scene;
   scene.parts.resize(model.parts.size());
   std::size_t total = 0;
@@ -177,19 +192,25 @@ Result<DpScene> sample_quadric_dps(const Model& model, const SamplingOptions& op
     const Part& part = model.parts[p];
     const PartSampler sampler(model, p, options);
     std::vector<FaceDps> faces(part.faces.size());
-    parallel_for(faces.size(), [&](std::size_t i) {
-      if (stop) return;
-      sampler.sample_face(static_cast<std::uint32_t>(i), faces[i]);
-      const std::size_t now = ++done;
-      if ((now & 63) == 0 && !report(options.progress, "prepare", static_cast<double>(now) / static_cast<double>(total))) stop = true;
-    }, 4);
+    parallel_for(
+        faces.size(),
+        [&](std::size_t i) {
+          if (stop) return;
+          sampler.sample_face(static_cast<std::uint32_t>(i), faces[i]);
+          const std::size_t now = ++done;
+          if ((now & 63) == 0 &&
+              !report(options.progress, "prepare", static_cast<double>(now) / static_cast<double>(total)))
+            stop = true;
+        },
+        4);
     if (stop) return {StatusCode::cancelled, "cancelled"};
     PartDps& out = scene.parts[p];
     for (std::size_t i = 0; i < faces.size(); ++i) {
       append(faces[i].dps, out);
       if (faces[i].failure.empty()) continue;
       const std::string& name = part.faces[i].name;
-      out.skipped.push_back({name.empty() ? "face " + std::to_string(i + 1) + " of " + part.name : name, faces[i].failure, 1});
+      out.skipped.push_back(
+          {name.empty() ? "face " + std::to_string(i + 1) + " of " + part.name : name, faces[i].failure, 1});
     }
     scene.bound_px = std::max(scene.bound_px, out.bound_px);
     for (const QuadricDp& dp : out.dps) {

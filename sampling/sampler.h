@@ -13,10 +13,11 @@
 namespace dupin {
 
 struct SamplingOptions {
-  /// Largest distance between a drawn point and the surface, in model units; what holds when there is no camera.
+  /// Largest distance between a drawn point and the surface, in model units; what holds when there is no
+  /// camera.
   double tolerance = 0;
-  /// With a camera, the tolerance of a cell is `tolerance_px` pixels at the cell's nearest visible point, and cells that
-  /// are out of the picture are not refined.
+  /// With a camera, the tolerance of a cell is `tolerance_px` pixels at the cell's nearest visible point, and
+  /// cells that are out of the picture are not refined.
   std::optional<Camera> camera;
   double tolerance_px = 0.5;
   /// Largest angle between a drawn and the true normal, in radians.
@@ -24,8 +25,8 @@ struct SamplingOptions {
   Progress progress;
 };
 
-/// Every face of every part, in parallel over faces; the result does not depend on the number of threads. Faces for which no
-/// DP could be made are listed in their PartDps::skipped with the reason.
+/// Every face of every part, in parallel over faces; the result does not depend on the number of threads.
+/// Faces for which no DP could be made are listed in their PartDps::skipped with the reason.
 Result<DpScene> sample_quadric_dps(const Model& model, const SamplingOptions& options);
 
 }  // namespace dupin

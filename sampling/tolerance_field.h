@@ -13,8 +13,8 @@ class ToleranceField {
  public:
   ToleranceField(const SamplingOptions& options, const Model& model, std::uint32_t part);
 
-  /// The largest deviation that stays within the tolerance for everything in the box; infinite where no instance of it is in the
-  /// picture.
+  /// The largest deviation that stays within the tolerance for everything in the box; infinite where no
+  /// instance of it is in the picture.
   double at(const Box3& box) const;
   /// What `at` is in pixels; 0 without a camera.
   double tolerance_px() const { return has_camera_ ? tolerance_px_ : 0; }
@@ -25,7 +25,8 @@ class ToleranceField {
     Affine3 to_world;
     double scale;  ///< the largest stretch of a length by the instance
   };
-  /// Size of a pixel, in the part's units, at the box's nearest visible point; infinite if it is out of the picture.
+  /// Size of a pixel, in the part's units, at the box's nearest visible point; infinite if it is out of the
+  /// picture.
   double pixel_in_part(const View& view, const Box3& box) const;
   double finest_pixel(const Box3& box) const;
 

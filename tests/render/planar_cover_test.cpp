@@ -14,7 +14,8 @@ struct Disagreements {
   int uncovered = 0, overfull = 0, wrong = 0, doubled = 0;
 };
 
-Disagreements disagreements(const PartDps& part, const QuadricDp& dp, const PlanarCover& cover, unsigned seed) {
+Disagreements disagreements(const PartDps& part, const QuadricDp& dp, const PlanarCover& cover,
+                            unsigned seed) {
   Box2 box;
   for (const Vec2 c : dp.footprint) box.add(c);
   std::mt19937_64 random(seed);
@@ -65,7 +66,8 @@ TEST(PlanarCover, RandomStars) {
     const int n = 4 + static_cast<int>(8 * unit(random));
     std::vector<Vec2> corners;
     for (int k = 0; k < n; ++k) {
-      const double angle = (k + 0.6 * unit(random)) * 2 * 3.14159265358979323846 / n, radius = 0.25 + 0.8 * unit(random);
+      const double angle = (k + 0.6 * unit(random)) * 2 * 3.14159265358979323846 / n,
+                   radius = 0.25 + 0.8 * unit(random);
       corners.push_back({radius * std::cos(angle), radius * std::sin(angle)});
     }
     for (int k = 0; k < n; ++k) {
@@ -74,7 +76,8 @@ TEST(PlanarCover, RandomStars) {
         part.lines.push_back({a, b, k % 2 == 0});
       } else {
         const Vec2 across{a.y - b.y, b.x - a.x};
-        part.arcs.push_back({a, (a + b) * 0.5 + across * (0.4 * (unit(random) - 0.5)), b, 0.5 + unit(random), k % 2 == 0});
+        part.arcs.push_back(
+            {a, (a + b) * 0.5 + across * (0.4 * (unit(random) - 0.5)), b, 0.5 + unit(random), k % 2 == 0});
       }
     }
     dp.lines = static_cast<std::uint16_t>(part.lines.size());

@@ -22,18 +22,21 @@ double evaluate(const Net& n, double s, double t) {
   double sum = 0;
   for (int i = 0; i <= n.p; ++i)
     for (int j = 0; j <= n.q; ++j)
-      sum += n.at(i, j) * std::pow(s, i) * std::pow(1 - s, n.p - i) * std::pow(t, j) * std::pow(1 - t, n.q - j);
+      sum +=
+          n.at(i, j) * std::pow(s, i) * std::pow(1 - s, n.p - i) * std::pow(t, j) * std::pow(1 - t, n.q - j);
   return sum;
 }
 
 TEST(Bernstein, ProductIsTheProductOfTheValues) {
   std::mt19937 rng(1);
   for (int trial = 0; trial < 50; ++trial) {
-    const Net a = random_net(trial % 6, (trial * 7) % 5, rng), b = random_net((trial * 3) % 4, trial % 7, rng);
+    const Net a = random_net(trial % 6, (trial * 7) % 5, rng),
+              b = random_net((trial * 3) % 4, trial % 7, rng);
     Net c;
     multiply(a, b, c);
     for (double s : {0.0, 0.3, 1.0})
-      for (double t : {0.0, 0.7, 1.0}) EXPECT_NEAR(evaluate(c, s, t), evaluate(a, s, t) * evaluate(b, s, t), 1e-13);
+      for (double t : {0.0, 0.7, 1.0})
+        EXPECT_NEAR(evaluate(c, s, t), evaluate(a, s, t) * evaluate(b, s, t), 1e-13);
   }
 }
 
@@ -67,7 +70,11 @@ TEST(Bernstein, CoefficientsBoundTheValues) {
 TEST(Bernstein, DivisionBySideUndoesMultiplication) {
   std::mt19937 rng(4);
   const Net a = random_net(3, 4, rng);
-  const struct { Side side; int p, q; double c0, c1; } cases[] = {
+  const struct {
+    Side side;
+    int p, q;
+    double c0, c1;
+  } cases[] = {
       {Side::u0, 1, 0, 0, 1}, {Side::u1, 1, 0, 1, 0}, {Side::v0, 0, 1, 0, 1}, {Side::v1, 0, 1, 1, 0}};
   for (const auto& c : cases) {
     Net factor, product, quotient;

@@ -17,7 +17,8 @@ BezierPatch random_patch(int p, int q, bool rational, double bend, std::mt19937&
   for (int i = 0; i <= p; ++i)
     for (int j = 0; j <= q; ++j) {
       const double w = rational ? 1 + 0.1 * value(rng) : 1;
-      const Vec3 at{static_cast<double>(i) / p + 0.03 * value(rng), static_cast<double>(j) / q + 0.03 * value(rng), bend * value(rng)};
+      const Vec3 at{static_cast<double>(i) / p + 0.03 * value(rng),
+                    static_cast<double>(j) / q + 0.03 * value(rng), bend * value(rng)};
       patch.poles.push_back({at.x * w, at.y * w, at.z * w, w});
     }
   return patch;
@@ -43,7 +44,8 @@ void compare(const BezierPatch& cell, const CellFit& fit, double lo_s, double lo
     for (int j = 0; j <= 12; ++j) {
       const double s = lo_s + (1 + kCellMargin - lo_s) * i / 12, t = lo_t + (1 + kCellMargin - lo_t) * j / 12;
       const Vec3 p = point_at(cell, s, t);
-      const Vec3 su = point_at(cell, s + h, t) - point_at(cell, s - h, t), sv = point_at(cell, s, t + h) - point_at(cell, s, t - h);
+      const Vec3 su = point_at(cell, s + h, t) - point_at(cell, s - h, t),
+                 sv = point_at(cell, s, t + h) - point_at(cell, s, t - h);
       const Vec3 d = p - dp.origin, n = dp.n();
       const Vec2 xy{dot(d, dp.u), dot(d, dp.v)};
       const double z = sheet_height(dp, xy);
@@ -58,14 +60,16 @@ void compare(const BezierPatch& cell, const CellFit& fit, double lo_s, double lo
 }
 
 /// Divides until every cell is certified, comparing each.
-void search(const BezierPatch& patch, double tolerance, double angle, int depth, CellFitter& fitter, Worst& worst) {
+void search(const BezierPatch& patch, double tolerance, double angle, int depth, CellFitter& fitter,
+            Worst& worst) {
   const CellFit fit = fitter.fit(patch, tolerance, angle);
   if (fit.valid) {
     const CollapsedSides collapsed = collapsed_sides(patch);
     ++worst.cells;
     return compare(patch, fit, collapsed.u0 ? 0 : -kCellMargin, collapsed.v0 ? 0 : -kCellMargin, worst);
   }
-  ASSERT_LT(depth, 30) << "a cell that could not be certified: twist or sheet " << !fit.quadric_decides << " bound " << fit.bound << " normal " << fit.normal_bound;
+  ASSERT_LT(depth, 30) << "a cell that could not be certified: twist or sheet " << !fit.quadric_decides
+                       << " bound " << fit.bound << " normal " << fit.normal_bound;
   BezierPatch a, b;
   split_patch(patch, fit.split_u, a, b);
   search(a, tolerance, angle, depth + 1, fitter, worst);
@@ -77,7 +81,8 @@ TEST(BezierCell, NoPointOrNormalViolatesItsCertificate) {
   CellFitter fitter;
   for (int trial = 0; trial < 40; ++trial) {
     Worst worst;
-    const BezierPatch patch = random_patch(1 + trial % 5, 1 + (trial / 5) % 4, trial % 2 == 1, trial % 3 == 0 ? 0.1 : 0.5, rng);
+    const BezierPatch patch =
+        random_patch(1 + trial % 5, 1 + (trial / 5) % 4, trial % 2 == 1, trial % 3 == 0 ? 0.1 : 0.5, rng);
     search(patch, 1e-3, 0.02, 0, fitter, worst);
     EXPECT_LE(worst.position, 1 + 1e-6);
     EXPECT_LE(worst.normal, 1 + 1e-6);

@@ -49,7 +49,8 @@ bool even_odd(const std::vector<Vec2>& polygon, Vec2 p) {
   bool inside = false;
   for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++)
     if ((polygon[i].y > p.y) != (polygon[j].y > p.y) &&
-        p.x < polygon[j].x + (polygon[i].x - polygon[j].x) * (p.y - polygon[j].y) / (polygon[i].y - polygon[j].y))
+        p.x < polygon[j].x +
+                  (polygon[i].x - polygon[j].x) * (p.y - polygon[j].y) / (polygon[i].y - polygon[j].y))
       inside = !inside;
   return inside;
 }
@@ -94,7 +95,8 @@ TEST(ChartRegion, SplittingTheFootprintChangesNothing) {
   std::vector<Vec2> outline;
   ChartPieces pieces = star(60, rng, outline);
   for (int i = 0; i < 12; ++i)
-    pieces.ellipses.push_back({{0.2 * std::cos(i * kPi / 6), 0.2 * std::sin(i * kPi / 6)}, 1 / 0.03, 0, 1 / 0.02, true});
+    pieces.ellipses.push_back(
+        {{0.2 * std::cos(i * kPi / 6), 0.2 * std::sin(i * kPi / 6)}, 1 / 0.03, 0, 1 / 0.02, true});
   PartDps whole, parts;
   emit_dp(plane_dp(1), pieces, {-1.1, -1.05}, false, whole);
   const int count = emit_exact_dp(plane_dp(1), pieces, {-1.1, -1.05}, false, parts);
@@ -116,7 +118,8 @@ TEST(ChartRegion, PointsOnSharedEndPointsAreCountedOnce) {
   for (int i = 0; i < 4; ++i) pieces.lines.push_back({c[i], c[(i + 1) % 4], false});
   PartDps part;
   emit_dp(plane_dp(2), pieces, {0, 0}, true, part);
-  for (double f : {0.25, 0.5, 0.75, 0.999}) EXPECT_TRUE(region_contains(part, part.dps[0], {0.5 * f, 0.5 * f, 0}));
+  for (double f : {0.25, 0.5, 0.75, 0.999})
+    EXPECT_TRUE(region_contains(part, part.dps[0], {0.5 * f, 0.5 * f, 0}));
   for (double f : {1.001, 1.5, 3.0}) EXPECT_FALSE(region_contains(part, part.dps[0], {0.5 * f, 0.5 * f, 0}));
 }
 

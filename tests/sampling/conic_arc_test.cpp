@@ -29,7 +29,8 @@ double distance_to_chain(const Vec3& p, const ArcChain& chain, int samples) {
   double least = 1e300;
   for (const ConicArc3& arc : chain.arcs)
     for (int i = 0; i < samples; ++i)
-      least = std::min(least, distance_to_segment(p, point_at(arc, static_cast<double>(i) / samples), point_at(arc, (i + 1.0) / samples)));
+      least = std::min(least, distance_to_segment(p, point_at(arc, static_cast<double>(i) / samples),
+                                                  point_at(arc, (i + 1.0) / samples)));
   return least;
 }
 
@@ -39,7 +40,9 @@ TEST(ConicArc, CirclesAreExactWhateverTheirLength) {
     const ArcChain chain = approximate_edge(edge_on({circle}, 0.3, 0.3 + turn), kLoose);
     for (const ConicArc3& arc : chain.arcs)
       for (int i = 0; i <= 10; ++i) EXPECT_NEAR(distance(point_at(arc, i / 10.0), circle.center), 2.5, 1e-14);
-    EXPECT_NEAR(distance(chain.arcs.back().p2, circle.center + circle.x * (2.5 * std::cos(0.3 + turn)) + circle.y * (2.5 * std::sin(0.3 + turn))), 0, 1e-14);
+    EXPECT_NEAR(distance(chain.arcs.back().p2, circle.center + circle.x * (2.5 * std::cos(0.3 + turn)) +
+                                                   circle.y * (2.5 * std::sin(0.3 + turn))),
+                0, 1e-14);
   }
 }
 
@@ -76,13 +79,15 @@ TEST(ConicArc, SplinesStayWithinTheToleranceAndSayByHowMuch) {
         spline.poles.push_back({i + 0.5 * value(rng), 3 * value(rng), value(rng)});
         if (rational) spline.weights.push_back(1.5 + value(rng));
       }
-      for (int i = 0; i < poles + degree + 1; ++i) spline.knots.push_back(std::clamp(i - degree, 0, poles - degree));
+      for (int i = 0; i < poles + degree + 1; ++i)
+        spline.knots.push_back(std::clamp(i - degree, 0, poles - degree));
       const double t1 = poles - degree;
       const Edge edge = edge_on({spline}, 0, t1);
       const ArcChain chain = approximate_edge(edge, kLoose);
       EXPECT_LE(chain.deviation, 1e-3);
       for (int i = 0; i <= 200; ++i)
-        EXPECT_LE(distance_to_chain(point_at(*edge.curve, t1 * i / 200), chain, 64), 1e-3 + 2e-4) << "degree " << degree;
+        EXPECT_LE(distance_to_chain(point_at(*edge.curve, t1 * i / 200), chain, 64), 1e-3 + 2e-4)
+            << "degree " << degree;
       for (std::size_t i = 1; i < chain.arcs.size(); ++i) EXPECT_EQ(chain.arcs[i - 1].p2, chain.arcs[i].p0);
     }
 }
@@ -94,7 +99,8 @@ TEST(ConicArc, PartsLieOnTheWhole) {
   EXPECT_NEAR(distance(part.p2, point_at(arc, 0.7)), 0, 1e-15);
   for (int i = 0; i <= 10; ++i) {
     double least = 1e300;
-    for (int k = 0; k <= 20000; ++k) least = std::min(least, distance(point_at(part, i / 10.0), point_at(arc, k / 20000.0)));
+    for (int k = 0; k <= 20000; ++k)
+      least = std::min(least, distance(point_at(part, i / 10.0), point_at(arc, k / 20000.0)));
     EXPECT_LT(least, 2e-4);
   }
 }
@@ -103,7 +109,13 @@ TEST(ConicArc, ClippingKeepsExactlyTheInnerSide) {
   std::mt19937 rng(6);
   std::uniform_real_distribution<double> value(-1, 1);
   for (int trial = 0; trial < 200; ++trial) {
-    const ConicArc3 arc{{value(rng), value(rng), value(rng)}, {value(rng), value(rng), value(rng)}, {value(rng), value(rng), value(rng)}, 0.2 + std::abs(value(rng)), trial % 5 == 0, 0, 1};
+    const ConicArc3 arc{{value(rng), value(rng), value(rng)},
+                        {value(rng), value(rng), value(rng)},
+                        {value(rng), value(rng), value(rng)},
+                        0.2 + std::abs(value(rng)),
+                        trial % 5 == 0,
+                        0,
+                        1};
     const Vec3 n = normalized({value(rng), value(rng), value(rng)});
     const double d = 0.3 * value(rng);
     std::vector<ConicArc3> parts;

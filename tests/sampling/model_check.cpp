@@ -32,8 +32,10 @@ Outline outline_of(const Part& part, const Face& face) {
       const Edge& edge = part.edges[trim.edge];
       for (int i = 0; i < kSides; ++i) {
         const double f0 = static_cast<double>(i) / kSides, f1 = static_cast<double>(i + 1) / kSides;
-        const double a = trim.reversed ? edge.t1 + (edge.t0 - edge.t1) * f0 : edge.t0 + (edge.t1 - edge.t0) * f0;
-        const double b = trim.reversed ? edge.t1 + (edge.t0 - edge.t1) * f1 : edge.t0 + (edge.t1 - edge.t0) * f1;
+        const double a =
+            trim.reversed ? edge.t1 + (edge.t0 - edge.t1) * f0 : edge.t0 + (edge.t1 - edge.t0) * f0;
+        const double b =
+            trim.reversed ? edge.t1 + (edge.t0 - edge.t1) * f1 : edge.t0 + (edge.t1 - edge.t0) * f1;
         polygon.push_back(point_at(trim.pcurve, a));
         if (!edge.curve || is_seam(face, trim)) continue;
         outline.points.push_back(point_at(*edge.curve, a));
@@ -50,7 +52,8 @@ bool inside_polygons(const Outline& outline, Vec2 p) {
   for (const auto& polygon : outline.uv)
     for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++)
       if ((polygon[i].y > p.y) != (polygon[j].y > p.y) &&
-          p.x < polygon[j].x + (polygon[i].x - polygon[j].x) * (p.y - polygon[j].y) / (polygon[i].y - polygon[j].y))
+          p.x < polygon[j].x +
+                    (polygon[i].x - polygon[j].x) * (p.y - polygon[j].y) / (polygon[i].y - polygon[j].y))
         inside = !inside;
   return inside;
 }
@@ -102,11 +105,13 @@ bool nearest(const Surface& surface, const Vec3& p, Vec2& uv, const Box2& limits
   double best = dot(p - jet.p, p - jet.p);
   for (int i = 0; i < 60; ++i) {
     const Vec3 r = p - jet.p;
-    const double a = dot(jet.pu, jet.pu), b = dot(jet.pu, jet.pv), c = dot(jet.pv, jet.pv), x = dot(r, jet.pu), y = dot(r, jet.pv);
+    const double a = dot(jet.pu, jet.pu), b = dot(jet.pu, jet.pv), c = dot(jet.pv, jet.pv),
+                 x = dot(r, jet.pu), y = dot(r, jet.pv);
     const double A = a * (1 + lambda), C = c * (1 + lambda), det = A * C - b * b;
     if (!(std::abs(det) > 0)) return false;
     Vec2 next = uv + Vec2{(x * C - y * b) / det, (A * y - b * x) / det};
-    next.x = std::clamp(next.x, limits.lo.x, limits.hi.x), next.y = std::clamp(next.y, limits.lo.y, limits.hi.y);
+    next.x = std::clamp(next.x, limits.lo.x, limits.hi.x),
+    next.y = std::clamp(next.y, limits.lo.y, limits.hi.y);
     const SurfaceJet trial = evaluate(surface, next.x, next.y, 1);
     const double d = dot(p - trial.p, p - trial.p);
     if (d <= best) {
@@ -127,14 +132,16 @@ Box2 grown(const Box2& box, double by) {
 }
 
 /// Points of the face: all of them must be in some region.
-void check_coverage(const Part& part, const PartDps& dps, const Outline& outline, const std::vector<std::uint32_t>& mine,
-                    const CheckOptions& options, FaceReport& report) {
+void check_coverage(const Part& part, const PartDps& dps, const Outline& outline,
+                    const std::vector<std::uint32_t>& mine, const CheckOptions& options, FaceReport& report) {
   const Face& face = part.faces[report.face];
   const Surface& surface = part.surfaces[face.surface];
   std::mt19937 rng(report.face + 1);
   std::uniform_real_distribution<double> unit(0, 1);
-  for (int tries = 0; tries < 6 * options.points_per_face && report.points < options.points_per_face; ++tries) {
-    const Vec2 uv{face.uv_box.lo.x + face.uv_box.size().x * unit(rng), face.uv_box.lo.y + face.uv_box.size().y * unit(rng)};
+  for (int tries = 0; tries < 6 * options.points_per_face && report.points < options.points_per_face;
+       ++tries) {
+    const Vec2 uv{face.uv_box.lo.x + face.uv_box.size().x * unit(rng),
+                  face.uv_box.lo.y + face.uv_box.size().y * unit(rng)};
     if (!inside_polygons(outline, uv)) continue;
     const Vec3 p = point_at(surface, uv.x, uv.y);
     if (distance_to_outline(outline, p) <= options.margin) continue;
@@ -144,24 +151,27 @@ void check_coverage(const Part& part, const PartDps& dps, const Outline& outline
 }
 
 /// Points drawn: all of them must be on the face, no farther off than their DP's bounds say.
-void check_bounds(const Part& part, const PartDps& dps, const Outline& outline, const std::vector<std::uint32_t>& mine,
-                  const CheckOptions& options, FaceReport& report) {
+void check_bounds(const Part& part, const PartDps& dps, const Outline& outline,
+                  const std::vector<std::uint32_t>& mine, const CheckOptions& options, FaceReport& report) {
   const Face& face = part.faces[report.face];
   const Surface& surface = part.surfaces[face.surface];
   const double rounding = 1e-9 * part.box.diagonal();
   double edge_reach = 0;
   for (const Loop& loop : face.loops)
     for (const Trim& trim : loop) edge_reach = std::max(edge_reach, 2 * part.edges[trim.edge].tolerance);
-  const std::size_t stride = std::max<std::size_t>(1, mine.size() / static_cast<std::size_t>(options.most_dps_per_face));
+  const std::size_t stride =
+      std::max<std::size_t>(1, mine.size() / static_cast<std::size_t>(options.most_dps_per_face));
   for (std::size_t m = 0; m < mine.size(); m += stride) {
     const QuadricDp& dp = dps.dps[mine[m]];
     for (int i = 0; i < options.points_per_dp; ++i)
       for (int j = 0; j < options.points_per_dp; ++j) {
         const double s = (i + 0.5) / options.points_per_dp, t = (j + 0.5) / options.points_per_dp;
         const auto& f = dp.footprint;
-        const Vec2 xy = f[0] * ((1 - s) * (1 - t)) + f[1] * (s * (1 - t)) + f[2] * (s * t) + f[3] * ((1 - s) * t);
+        const Vec2 xy =
+            f[0] * ((1 - s) * (1 - t)) + f[1] * (s * (1 - t)) + f[2] * (s * t) + f[3] * ((1 - s) * t);
         const Vec3 l{xy.x, xy.y, sheet_height(dp, xy, 0)};
-        if (!std::isfinite(l.z) || std::abs(quadric_value(dp, l)) > rounding || !region_contains(dps, dp, l)) continue;
+        if (!std::isfinite(l.z) || std::abs(quadric_value(dp, l)) > rounding || !region_contains(dps, dp, l))
+          continue;
         ++report.drawn;
         const Vec3 p = dp.origin + dp.u * l.x + dp.v * l.y + dp.n() * l.z;
         Vec2 uv = dp.cell.lo + Vec2{dp.cell.size().x * s, dp.cell.size().y * t};
@@ -170,25 +180,31 @@ void check_bounds(const Part& part, const PartDps& dps, const Outline& outline, 
         double least = 1e300;
         for (int a = 0; a < 5; ++a)
           for (int b = 0; b < 5; ++b) {
-            const Vec2 q = dp.cell.lo + Vec2{dp.cell.size().x * (a + 0.5) / 5, dp.cell.size().y * (b + 0.5) / 5};
+            const Vec2 q =
+                dp.cell.lo + Vec2{dp.cell.size().x * (a + 0.5) / 5, dp.cell.size().y * (b + 0.5) / 5};
             const double d = distance(point_at(surface, q.x, q.y), p);
             if (d < least) least = d, best = q;
           }
         uv = best;
-        // Closed forms where there are some: descent may run over a sphere's pole, into parameters that name the same points.
-        if (is_quadric(surface)) uv = *invert(surface, p, dp.cell.center());
+        // Closed forms where there are some: descent may run over a sphere's pole, into parameters that name
+        // the same points.
+        if (is_quadric(surface))
+          uv = *invert(surface, p, dp.cell.center());
         else if (!nearest(surface, p, uv, grown(dp.cell, 1.0))) {
           ++report.unresolved;
           continue;
         }
-        // A recognised spline's certificate is nurbs' own (recognize_test): here the quadric is held against what was recognised.
+        // A recognised spline's certificate is nurbs' own (recognize_test): here the quadric is held against
+        // what was recognised.
         const bool recognized = face.recognized && is_quadric(face.recognized->surface);
         const Surface& drawn_surface = recognized ? face.recognized->surface : surface;
-        const auto there = recognized ? invert(drawn_surface, p, {3.14159265358979, 0}) : std::optional<Vec2>(uv);
+        const auto there =
+            recognized ? invert(drawn_surface, p, {3.14159265358979, 0}) : std::optional<Vec2>(uv);
         const SurfaceJet jet = evaluate(drawn_surface, there->x, there->y, 1);
         // At its border a face may reach over what the file's own edges are off (QuadricDp::bound).
         const double reach = inside_polygons(outline, uv) ? 0 : edge_reach;
-        report.worst_position = std::max(report.worst_position, (distance(p, jet.p) - rounding - reach) / (dp.bound + rounding));
+        report.worst_position =
+            std::max(report.worst_position, (distance(p, jet.p) - rounding - reach) / (dp.bound + rounding));
         const Vec3 n = normalized(cross(jet.pu, jet.pv)) * (face.reversed ? -1.0 : 1.0);
         const Vec3 g = drawn_normal(dp, l);
         const Vec3 drawn = normalized(dp.u * g.x + dp.v * g.y + dp.n() * g.z) * (dp.flipped ? -1.0 : 1.0);
@@ -215,7 +231,8 @@ std::vector<FaceReport> check_scene(const Model& model, const DpScene& scene, co
   for (std::uint32_t p = 0; p < model.parts.size(); ++p) {
     const Part& part = model.parts[p];
     std::vector<std::vector<std::uint32_t>> mine(part.faces.size());
-    for (std::uint32_t i = 0; i < scene.parts[p].dps.size(); ++i) mine[scene.parts[p].dps[i].face].push_back(i);
+    for (std::uint32_t i = 0; i < scene.parts[p].dps.size(); ++i)
+      mine[scene.parts[p].dps[i].face].push_back(i);
     const std::size_t first = reports.size();
     reports.resize(first + part.faces.size());
     parallel_for(part.faces.size(), [&](std::size_t f) {
@@ -227,7 +244,9 @@ std::vector<FaceReport> check_scene(const Model& model, const DpScene& scene, co
       // Nearer to an edge than it is wrong by its own account nothing can be said.
       CheckOptions mine_options = options;
       for (const Loop& loop : part.faces[f].loops)
-        for (const Trim& trim : loop) mine_options.margin = std::max(mine_options.margin, options.margin + part.edges[trim.edge].tolerance);
+        for (const Trim& trim : loop)
+          mine_options.margin =
+              std::max(mine_options.margin, options.margin + part.edges[trim.edge].tolerance);
       check_coverage(part, scene.parts[p], outline, mine[f], mine_options, report);
       check_bounds(part, scene.parts[p], outline, mine[f], mine_options, report);
     });

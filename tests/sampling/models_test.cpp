@@ -1,5 +1,6 @@
-// Whole models: nothing of a face is missing, nothing is drawn beside it, and no bound is violated, by dense sampling in double
-// precision. A few models that between them have every kind of face; DUPIN_CHECK_ALL=1 checks every file there is.
+// Whole models: nothing of a face is missing, nothing is drawn beside it, and no bound is violated, by dense
+// sampling in double precision. A few models that between them have every kind of face; DUPIN_CHECK_ALL=1
+// checks every file there is.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,7 +44,8 @@ void check_model(const std::string& path) {
   long points = 0;
   for (const test::FaceReport& r : test::check_scene(model, scene, options)) {
     points += r.points + r.drawn;
-    const std::string where = "part " + std::to_string(r.part) + " face " + std::to_string(r.face) + " (" + r.kind + ")";
+    const std::string where =
+        "part " + std::to_string(r.part) + " face " + std::to_string(r.face) + " (" + r.kind + ")";
     EXPECT_EQ(r.uncovered, 0) << where << ": of " << r.points << " points";
     EXPECT_EQ(r.outside, 0) << where << ": of " << r.drawn << " drawn";
     if (r.dps > 0) {
@@ -56,9 +58,15 @@ void check_model(const std::string& path) {
 }
 
 class Samples : public ::testing::TestWithParam<const char*> {};
-TEST_P(Samples, AreCoveredAndWithinTheirBounds) { check_model(test::sample(GetParam())); }
-INSTANTIATE_TEST_SUITE_P(Shipped, Samples, ::testing::Values("bracket.step", "assembly.step", "freeform.step"),
-                         [](const auto& i) { std::string n = i.param; return n.substr(0, n.find('.')); });
+TEST_P(Samples, AreCoveredAndWithinTheirBounds) {
+  check_model(test::sample(GetParam()));
+}
+INSTANTIATE_TEST_SUITE_P(Shipped, Samples,
+                         ::testing::Values("bracket.step", "assembly.step", "freeform.step"),
+                         [](const auto& i) {
+                           std::string n = i.param;
+                           return n.substr(0, n.find('.'));
+                         });
 
 class RealModels : public ::testing::TestWithParam<const char*> {};
 TEST_P(RealModels, AreCoveredAndWithinTheirBounds) {
@@ -67,12 +75,15 @@ TEST_P(RealModels, AreCoveredAndWithinTheirBounds) {
 }
 INSTANTIATE_TEST_SUITE_P(
     Data, RealModels,
-    ::testing::Values("cad/nist/nist_ctc_02_asme1_ap242.stp", "cad/freecad/as1-ac-214.stp", "cad/occt/linkrods.step",
-                      "cad/occt/bearing.iges", "nurbs/converted/teapot.step", "nurbs/converted/v1_Camera_visible.step", "nurbs/converted/v1_HumanHead1_visible.step",
-                      "cad/kicad/RV_Disc_D9mm_W4.1mm_P5mm.step", "cad/truck/abc-0008.step", "cad/occt/screw.step"),
+    ::testing::Values("cad/nist/nist_ctc_02_asme1_ap242.stp", "cad/freecad/as1-ac-214.stp",
+                      "cad/occt/linkrods.step", "cad/occt/bearing.iges", "nurbs/converted/teapot.step",
+                      "nurbs/converted/v1_Camera_visible.step", "nurbs/converted/v1_HumanHead1_visible.step",
+                      "cad/kicad/RV_Disc_D9mm_W4.1mm_P5mm.step", "cad/truck/abc-0008.step",
+                      "cad/occt/screw.step"),
     [](const auto& i) {
       std::string n = std::filesystem::path(i.param).stem().string();
-      std::replace_if(n.begin(), n.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+      std::replace_if(
+          n.begin(), n.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
       return n;
     });
 
@@ -89,8 +100,8 @@ TEST(Scenes, DoNotDependOnTheNumberOfThreads) {
   for (std::size_t p = 0; p < one.parts.size(); ++p)
     for (std::size_t i = 0; i < one.parts[p].dps.size(); ++i) {
       const QuadricDp &a = one.parts[p].dps[i], &b = four.parts[p].dps[i];
-      EXPECT_TRUE(a.origin == b.origin && a.u == b.u && a.lambda_u == b.lambda_u && a.footprint == b.footprint &&
-                  a.first_arc == b.first_arc && a.bound == b.bound);
+      EXPECT_TRUE(a.origin == b.origin && a.u == b.u && a.lambda_u == b.lambda_u &&
+                  a.footprint == b.footprint && a.first_arc == b.first_arc && a.bound == b.bound);
     }
 }
 
@@ -106,7 +117,8 @@ TEST(Scenes, AnalyticFacesTakeFewPrimitives) {
       if (is_quadric(read->parts[p].surfaces[read->parts[p].faces[f].surface])) counts.push_back(of_face[f]);
   }
   ASSERT_FALSE(counts.empty());
-  std::nth_element(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2), counts.end());
+  std::nth_element(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2),
+                   counts.end());
   EXPECT_LE(counts[counts.size() / 2], 2);
 }
 
@@ -119,7 +131,8 @@ TEST(Scenes, CloseUpsKeepTheBoundInPixels) {
   Vec3 target{};
   for (const Part& part : read->parts)
     for (const Face& face : part.faces)
-      if (!is_quadric(part.surfaces[face.surface])) target = point_at(part.surfaces[face.surface], face.uv_box.center().x, face.uv_box.center().y);
+      if (!is_quadric(part.surfaces[face.surface]))
+        target = point_at(part.surfaces[face.surface], face.uv_box.center().x, face.uv_box.center().y);
   for (double closer : {1.0, 30.0, 1000.0}) {
     SamplingOptions options;
     Camera camera;
@@ -136,13 +149,15 @@ TEST(Scenes, CloseUpsKeepTheBoundInPixels) {
 }
 
 TEST(Scenes, EveryFileThereIs) {
-  if (!std::getenv("DUPIN_CHECK_ALL")) GTEST_SKIP() << "set DUPIN_CHECK_ALL=1 to check every model in $DUPIN_DATA (half an hour)";
+  if (!std::getenv("DUPIN_CHECK_ALL"))
+    GTEST_SKIP() << "set DUPIN_CHECK_ALL=1 to check every model in $DUPIN_DATA (half an hour)";
   const char* data = std::getenv("DUPIN_DATA");
   if (!data) GTEST_SKIP() << "no $DUPIN_DATA";
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(data)) {
     const std::string extension = entry.path().extension().string();
-    if (extension == ".step" || extension == ".stp" || extension == ".iges" || extension == ".igs" || extension == ".brep")
+    if (extension == ".step" || extension == ".stp" || extension == ".iges" || extension == ".igs" ||
+        extension == ".brep")
       files.push_back(entry.path().string());
   }
   std::sort(files.begin(), files.end());
