@@ -1,43 +1,25 @@
 // dupin render: one picture of one or more files.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "../render/image.h"
-#include "../render/renderer.h"
-#include "../sampling/sampler.h"
 #include "commands.h"
 #include "exit_code.h"
 #include "load.h"
 #include "output_file.h"
-#include "render_options.h"
-#include "render_stats.h"
+#include "render_primitive.h"
+#include "stopwatch.h"
 
 namespace dupin::app {
 namespace {
 
-constexpr double kRadians = 3.14159265358979323846 / 180;
-
-/// Seconds since it was made or last asked.
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return seconds;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
 /// The work of one command, stage by stage; each fills its part of the statistics.
 class RenderJob {
  public:
-  explicit RenderJob(const RenderOptions& options) : options_(options), session_(options.common) {}
+  explicit RenderJob(const RenderOptions& options)
+      : options_(options), session_(options.common), primitive_(make_primitive(options)) {}
   int run();
 
  private:
@@ -53,10 +35,10 @@ class RenderJob {
 
   const RenderOptions& options_;
   Session session_;
+  std::unique_ptr<RenderPrimitive> primitive_;
   OutputFile picture_, statistics_;
   Model model_;
   Camera camera_;
-  DpScene dps_;
   Frame frame_;
   RenderStats stats_;
 };
@@ -67,7 +49,7 @@ Status RenderJob::reserve_outputs() {
 }
 
 Status RenderJob::load_model() {
-  Result<Loaded> loaded = load(session_, options_.files, options_.triangles() ? options_.deflection : 0);
+  Result<Loaded> loaded = load(session_, options_.files, primitive_->deflection(options_));
   if (!loaded.ok()) return loaded.status();
   stats_.times.import = loaded->import_seconds;
   model_ = std::move(loaded->model);
@@ -81,24 +63,7 @@ Status RenderJob::load_model() {
 }
 
 Status RenderJob::prepare() {
-  if (options_.triangles()) {
-    stats_.times.prepare = model_.mesh_seconds;
-    stats_.faces = report_faces_of_triangles(model_);
-    return {};
-  }
-  Stopwatch watch;
-  SamplingOptions sampling;
-  sampling.camera = camera_;
-  sampling.tolerance_px = options_.tolerance_px;
-  sampling.normal_tolerance = options_.normal_tolerance_degrees * kRadians;
-  sampling.progress = session_.progress();
-  Result<DpScene> dps = sample_quadric_dps(model_, sampling);
-  if (!dps.ok()) return dps.status();
-  dps_ = std::move(*dps);
-  stats_.times.prepare = watch.lap();
-  stats_.faces = report_faces(model_, dps_);
-  stats_.error = certified_error(dps_);
-  return {};
+  return primitive_->prepare({model_, camera_, options_, session_.progress()}, stats_);
 }
 
 unsigned RenderJob::outputs() const {
@@ -140,7 +105,7 @@ Status RenderJob::draw() {
   stats_.device = (*context)->name();
   stats_.gl_renderer = (*renderer)->gl_renderer();
 
-  const auto scene = (*renderer)->upload(model_, options_.triangles() ? nullptr : &dps_);
+  const auto scene = (*renderer)->upload(model_, primitive_->content());
   if (!scene.ok()) return scene.status();
   stats_.times.upload = watch.lap();
   stats_.primitives = (*scene)->info().primitives;
@@ -183,7 +148,7 @@ Status RenderJob::write() {
   stats_.times.total = session_.limits().elapsed();
   if (options_.stats.empty()) return {};
   stats_.files = options_.files;
-  stats_.primitive = options_.triangles() ? "triangles" : "quadric";
+  stats_.primitive = primitive_->kind();
   return statistics_.write(to_json(stats_).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
                            "\n");
 }
@@ -200,10 +165,9 @@ int RenderJob::finish() {
     if (const Status status = output->commit(); !status.ok()) return session_.fail(status);
   session_.done();
   list_skipped_faces();
-  session_.note(std::to_string(stats_.primitives) + (options_.triangles() ? " triangles" : " quadric DPs") +
-                " for " + std::to_string(stats_.faces.drawn) + " faces, " +
-                std::to_string(stats_.bytes / 1024) + " KiB, " + std::to_string(stats_.covered_pixels) +
-                " pixels, on " + stats_.gl_renderer);
+  session_.note(std::to_string(stats_.primitives) + " primitives (" + primitive_->kind() + ")" + " for " +
+                std::to_string(stats_.faces.drawn) + " faces, " + std::to_string(stats_.bytes / 1024) +
+                " KiB, " + std::to_string(stats_.covered_pixels) + " pixels, on " + stats_.gl_renderer);
   session_.note(describe(stats_.times));
   return stats_.faces.skipped.empty() ? kDone : kPartial;
 }

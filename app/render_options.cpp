@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "colors.h"
+#include "render_primitive.h"
 
 namespace dupin::app {
 namespace {
@@ -16,15 +17,24 @@ std::string extension(const std::string& path) {
   return text;
 }
 
+std::string joined(const std::vector<std::string>& names, const char* between) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : between) + name;
+  return text;
+}
+
 /// The primitives that the command's contract names; those of later versions are known so that they can be
 /// refused by name.
 std::string check_primitive(const std::string& name) {
-  static const std::vector<std::string> now{"auto", "quadric", "triangles"};
-  static const std::vector<std::string> later{"dp", "square", "rectangle", "ellipse", "pop", "qsplat", "amg"};
-  if (std::find(now.begin(), now.end(), name) != now.end()) return {};
-  if (std::find(later.begin(), later.end(), name) != later.end())
-    return "--primitive " + name + " is not in this version (auto, quadric and triangles are)";
-  return name + " not in {auto,quadric,triangles}";
+  static const std::vector<std::string> contract{"auto",    "quadric", "dp",     "square", "rectangle",
+                                                 "ellipse", "pop",     "qsplat", "amg",    "triangles"};
+  std::vector<std::string> now;
+  for (const PrimitiveKind& kind : primitive_kinds())
+    now.insert(now.end(), kind.names.begin(), kind.names.end());
+  if (std::count(now.begin(), now.end(), name)) return {};
+  if (std::count(contract.begin(), contract.end(), name))
+    return "--primitive " + name + " is not in this version (" + joined(now, ", ") + " are)";
+  return name + " not in {" + joined(now, ",") + "}";
 }
 
 std::string check_color(const std::string& text) {

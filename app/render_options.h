@@ -27,7 +27,6 @@ struct RenderOptions {
   std::string shading = "lit", device = "auto";
   int repeat = 1;
 
-  bool triangles() const { return primitive == "triangles"; }
   bool exr() const;
   int sample_count() const { return samples > 0 ? samples : exr() ? 1 : 4; }
   /// What is wrong with options that are fine each by itself.

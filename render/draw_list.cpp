@@ -4,6 +4,8 @@
 #include <limits>
 #include <map>
 
+#include "part_camera.h"
+
 namespace dupin {
 namespace {
 
@@ -19,42 +21,6 @@ constexpr double kProxyDistance = 1.2;
 /// ones waste more pixels around them than they spare, and edges, half their width and half a pixel, must not
 /// reach over a cell's margin.
 constexpr double kCellPx = 16;
-
-struct Plane3 {
-  Vec3 n;
-  double d;
-};
-
-/// The picture's four sides as planes in model space, inside positive, normals unit.
-std::array<Plane3, 4> side_planes(const ViewRays& view) {
-  std::array<Plane3, 4> planes;
-  for (int i = 0; i < 4; ++i) {
-    const double sign = i & 1 ? 1 : -1;
-    const Vec3 axis = i < 2 ? view.right : view.up;
-    const double s = i < 2 ? view.sx : view.sy, o = i < 2 ? view.ox : view.oy;
-    // Inside is |(axis·p − o·w)/s| <= w with w the depth or, in parallel, 1.
-    Vec3 n = axis * (sign / s);
-    double d = 0;
-    if (view.perspective) {
-      n += view.forward * (1 - sign * o / s);
-    } else {
-      d = 1 - sign * o / s;
-    }
-    const double l = length(n);
-    planes[static_cast<std::size_t>(i)] = {n / l, d / l - dot(n / l, view.eye)};
-  }
-  return planes;
-}
-
-/// Clip X and Y as functions of a point in model space.
-std::array<Plane3, 2> clip_rows(const ViewRays& view) {
-  const Vec3 offset = view.perspective ? view.forward : Vec3{};
-  const auto row = [&](const Vec3& axis, double s, double o) {
-    const Vec3 n = (axis - offset * o) / s;
-    return Plane3{n, -dot(n, view.eye) - (view.perspective ? 0 : o / s)};
-  };
-  return {row(view.right, view.sx, view.ox), row(view.up, view.sy, view.oy)};
-}
 
 void depth_range(const Scene::Impl& scene, const ViewRays& view, DrawList& list) {
   double lo = std::numeric_limits<double>::infinity(), hi = -lo;
@@ -117,41 +83,6 @@ InstanceTexels instance_texels(const SceneInstance& instance, const ScenePart& p
   t[6] = texel(transpose_times(out, row_y));
   t[7] = texel(transpose_times(out, view.forward));
   return t;
-}
-
-/// A placement's camera for culling, in the part's space relative to the anchor.
-struct PartCamera {
-  std::array<Plane3, 4> sides;
-  Plane3 depth;                ///< its value is the depth
-  std::array<Plane3, 2> rows;  ///< their values are clip coordinates X and Y
-  Vec3 eye;                    ///< or, in parallel, the direction towards the viewer
-  bool perspective;
-  bool cull_turned_away;
-};
-
-Plane3 to_part(const Plane3& plane, const SceneInstance& instance, const Vec3& anchor, bool normalise) {
-  // n·(L p + t) + d
-  Plane3 result{transpose_times(instance.to_world.linear, plane.n),
-                dot(plane.n, instance.to_world.translation) + plane.d};
-  result.d += dot(result.n, anchor);
-  const double l = normalise ? length(result.n) : 1;
-  return {result.n / l, result.d / l};
-}
-
-PartCamera part_camera(const SceneInstance& instance, const ScenePart& part, const ViewRays& view,
-                       const std::array<Plane3, 4>& sides) {
-  PartCamera camera;
-  for (std::size_t i = 0; i < 4; ++i) camera.sides[i] = to_part(sides[i], instance, part.anchor, true);
-  camera.depth = to_part({view.forward, -dot(view.forward, view.eye)}, instance, part.anchor, false);
-  const auto [row_x, row_y] = clip_rows(view);
-  const std::array<Plane3, 2> rows{row_x, row_y};
-  for (std::size_t k = 0; k < 2; ++k) camera.rows[k] = to_part(rows[k], instance, part.anchor, false);
-  camera.perspective = view.perspective;
-  const Vec3 eye = transform_point(instance.to_part, view.eye);
-  camera.eye = view.perspective ? eye - part.anchor : -(instance.to_part.linear * view.forward);
-  // From inside a solid, or cut open by the nearest depth, its inner sides can be seen.
-  camera.cull_turned_away = part.closed && !(view.perspective && part.box.contains(eye));
-  return camera;
 }
 
 /// Where on the picture a sphere may be seen.
@@ -392,12 +323,14 @@ void build_draw_list(const Scene::Impl& scene, const ViewRays& view, bool flats,
     const ScenePart& part = scene.parts[instance.part];
     const auto index = static_cast<std::uint32_t>(i);
     list.instances.push_back(instance_texels(instance, part, view, list.start_depth));
-    if (part.triangles == 0 && part.dps.empty()) continue;
+    if (part.primitives == 0) continue;
     const PartCamera camera = part_camera(instance, part, view, sides);
     if (part.triangles) {
       list.runs.push_back({index, part.first_triangle, part.triangles, instance.first_primitive});
       footprints.add(camera, part.box.center() - part.anchor, part.box.diagonal() / 2);
     }
+    if (!part.layer_box.empty())
+      footprints.add(camera, part.layer_box.center() - part.anchor, part.layer_box.diagonal() / 2);
     add_dps(instance, index, part, camera, footprints, flats, candidates);
   }
   // Equal keys keep the model's order, by the primitive's number: the same list whatever the sorting

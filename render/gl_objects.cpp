@@ -13,7 +13,7 @@ std::string full_text(const std::vector<std::string>& files, const std::vector<s
   text += shader_source("common.glsl");
   for (const std::string& file : files) {
     text += "#line 1\n";
-    text += shader_source(file);
+    text += file.find('\n') == std::string::npos ? shader_source(file) : std::string_view(file);
   }
   return text;
 }
@@ -31,7 +31,7 @@ GLuint compile(const Gl& gl, GLenum stage, const std::vector<std::string>& files
   if (ok) return shader;
   char log[2048] = "";
   gl.GetShaderInfoLog(shader, sizeof log, nullptr, log);
-  problem = "shader " + files.back() + ": " + log;
+  problem = "shader " + files.back().substr(0, files.back().find('\n')) + ": " + log;
   gl.DeleteShader(shader);
   return 0;
 }
@@ -59,7 +59,8 @@ Result<GlProgram> build_program(const Gl& gl, const ProgramText& text) {
   if (!ok) {
     char log[2048] = "";
     gl.GetProgramInfoLog(program.name(), sizeof log, nullptr, log);
-    return {StatusCode::no_device, "program " + text.vertex.back() + ": " + log};
+    return {StatusCode::no_device,
+            "program " + text.vertex.back().substr(0, text.vertex.back().find('\n')) + ": " + log};
   }
   gl.UseProgram(program.name());
   for (const auto& [name, unit] : text.units) gl.Uniform1i(program.uniform(name), unit);

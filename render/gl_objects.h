@@ -12,7 +12,7 @@
 namespace dupin {
 
 /// Texture units 0 … kUnits − 1 are the only ones that are used; the last is for making textures.
-inline constexpr int kUnits = 9, kScratchUnit = 8;
+inline constexpr int kUnits = 13, kScratchUnit = 12;
 
 /// A name made by one glGen… function and freed by its glDelete….
 template <auto Generate, auto Delete>
@@ -66,8 +66,9 @@ class GlProgram {
 
 struct ProgramText {
   std::vector<std::string> vertex,
-      fragment;                      ///< names of shaders/ files; no fragment shader: transform feedback only
-  std::vector<std::string> defines;  ///< "NAME" or "NAME VALUE"
+      fragment;  ///< names of shaders/ files, or texts (of several lines); no fragment shader: transform
+                 ///< feedback only
+  std::vector<std::string> defines;                ///< "NAME" or "NAME VALUE"
   std::vector<const char*> feedback;               ///< captured outputs, interleaved
   std::vector<std::pair<const char*, int>> units;  ///< samplers and their texture units
 };

@@ -62,6 +62,7 @@ void GlStateGuard::take_bindings() {
     Unit& unit = units_[static_cast<std::size_t>(i)];
     gl_.ActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + i));
     gl_.GetIntegerv(GL_TEXTURE_BINDING_2D, &unit.texture_2d);
+    gl_.GetIntegerv(GL_TEXTURE_BINDING_2D_ARRAY, &unit.texture_array);
     gl_.GetIntegerv(GL_TEXTURE_BINDING_BUFFER, &unit.texture_buffer);
     gl_.GetIntegerv(GL_SAMPLER_BINDING, &unit.sampler);
   }
@@ -136,6 +137,7 @@ void GlStateGuard::put_back_bindings() const {
     const Unit& unit = units_[static_cast<std::size_t>(i)];
     gl_.ActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + i));
     gl_.BindTexture(GL_TEXTURE_2D, name(unit.texture_2d));
+    gl_.BindTexture(GL_TEXTURE_2D_ARRAY, name(unit.texture_array));
     gl_.BindTexture(GL_TEXTURE_BUFFER, name(unit.texture_buffer));
     gl_.BindSampler(static_cast<GLuint>(i), name(unit.sampler));
   }

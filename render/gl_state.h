@@ -30,7 +30,7 @@ class GlStateGuard {
 
  private:
   struct Unit {
-    GLint texture_2d = 0, texture_buffer = 0, sampler = 0;
+    GLint texture_2d = 0, texture_array = 0, texture_buffer = 0, sampler = 0;
   };
   void take_bindings();
   void take_fixed_function();

@@ -42,6 +42,7 @@ Status Renderer::Impl::composite(const HostView& host, const ViewRays& view, con
       "composite",
       {{"screen.vert"}, {"composite.frag"}, {}, {}, {{"colors", kVerticesUnit}, {"depths", kIndicesUnit}}});
   if (!name) return name.status();
+  set_view(*name, view);
   const auto uniform = [&](const char* n) { return gl->GetUniformLocation(*name, n); };
   gl->BindFramebuffer(GL_DRAW_FRAMEBUFFER, state.draw_framebuffer());
   const auto terms = host_depth_terms(host, view, state);

@@ -4,7 +4,7 @@
 
 #include "../core/parallel.h"
 #include "gl_state.h"
-#include "renderer_impl.h"
+#include "layer.h"
 
 namespace dupin {
 namespace {
@@ -88,10 +88,13 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const GetProcAddress& get_pro
   return std::unique_ptr<Renderer>(new Renderer(std::move(impl)));
 }
 
-Result<std::unique_ptr<Scene>> Renderer::upload(const Model& model, const DpScene* dps) {
+Result<std::unique_ptr<Scene>> Renderer::upload(const Model& model, const SceneContent& content) {
   auto scene = std::make_unique<Scene::Impl>();
+  scene->layers = make_layers(model, content);
+  if (scene->layers.size() > kMostLayers)
+    return {StatusCode::limit, "a scene can have " + std::to_string(kMostLayers) + " layers"};
   ScenePackage package;
-  const Status status = pack_scene(model, dps, *scene, package);
+  Status status = pack_scene(model, content.dps, *scene, package);
   if (!status.ok()) return status;
   const Gl& gl = *impl_->gl;
   const GlStateGuard guard(gl);
@@ -104,11 +107,11 @@ Result<std::unique_ptr<Scene>> Renderer::upload(const Model& model, const DpScen
     buffer.assign(content.data(), content.size() * sizeof(content[0]), GL_STATIC_DRAW);
   };
   fill(scene->heap, GL_RGBA32UI, package.heap);
+  if (!package.indices.empty() || !scene->layers.empty()) fill(scene->colors, GL_R32UI, package.colors);
   if (!package.indices.empty()) {
     fill(scene->vertices, GL_RG32F, package.vertices);
     fill(scene->indices, GL_R32UI, package.indices);
     fill(scene->triangle_faces, GL_R32UI, package.triangle_faces);
-    fill(scene->colors, GL_R32UI, package.colors);
     scene->mesh_array = GlVertexArray(gl);
     gl.BindVertexArray(scene->mesh_array.name());
     gl.BindBuffer(GL_ARRAY_BUFFER, scene->vertices.buffer());
@@ -116,6 +119,9 @@ Result<std::unique_ptr<Scene>> Renderer::upload(const Model& model, const DpScen
     gl.VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 24, nullptr);
     gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, scene->indices.buffer());
   }
+  for (std::uint32_t i = 0; i < scene->layers.size() && status.ok(); ++i)
+    status = scene->layers[i]->upload(*impl_, *scene, i);
+  if (!status.ok()) return status;
   gl.Finish();
   return std::make_unique<Scene>(std::move(scene));
 }
@@ -154,7 +160,7 @@ Result<FrameStats> Renderer::draw_only(Scene& scene, const Camera& camera, const
   impl_->gl->Finish();
   FrameStats stats;
   stats.milliseconds = milliseconds_since(start);
-  stats.primitives = impl_->draw_list().primitives();
+  stats.primitives = impl_->drawn_primitives(scene.impl());
   return stats;
 }
 
@@ -169,7 +175,7 @@ Result<Frame> Renderer::draw(Scene& scene, const Camera& camera, const DrawOptio
   impl_->gl->Finish();
   Frame frame;
   frame.stats.milliseconds = milliseconds_since(start);
-  frame.stats.primitives = impl_->draw_list().primitives();
+  frame.stats.primitives = impl_->drawn_primitives(scene.impl());
   impl_->read_frame(view, options, frame);
   return frame;
 }

@@ -122,16 +122,31 @@ struct HostView {
   std::array<int, 4> viewport;              ///< x, y, width, height
 };
 
+class Layer;
+
+/// What a scene is drawn from, beside its model: one entry a kind of representation.
+struct SceneContent {
+  /// One entry a part of the model.
+  const DpScene* dps = nullptr;
+  /// Further kinds, made with what stands in render/layer.h.
+  std::vector<std::shared_ptr<Layer>> layers;
+};
+
 class Renderer {
  public:
+  class Impl;
   /// Compiles what every frame needs in the current context; no_device where that is older than OpenGL 3.3
   /// core.
   static Result<std::unique_ptr<Renderer>> create(const GetProcAddress& get_proc_address);
   ~Renderer();
 
-  /// The DPs of `dps`, one entry a part of the model; parts without faces, and every part if `dps` is null,
-  /// by their meshes.
-  Result<std::unique_ptr<Scene>> upload(const Model& model, const DpScene* dps);
+  /// Parts that none of `content` has are drawn by their meshes: those without faces, and every part if there
+  /// are no DPs. What `content` points to is not needed afterwards.
+  Result<std::unique_ptr<Scene>> upload(const Model& model, const SceneContent& content);
+  /// Of DPs alone; null: of meshes.
+  Result<std::unique_ptr<Scene>> upload(const Model& model, const DpScene* dps) {
+    return upload(model, SceneContent{dps, {}});
+  }
 
   /// Draws into framebuffers of its own and reads back what was asked for.
   Result<Frame> draw(Scene& scene, const Camera& camera, const DrawOptions& options);
@@ -147,7 +162,6 @@ class Renderer {
   std::string gl_version() const;
 
  private:
-  class Impl;
   explicit Renderer(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

@@ -2,6 +2,7 @@
 #ifndef DUPIN_RENDER_RENDERER_IMPL_H
 #define DUPIN_RENDER_RENDERER_IMPL_H
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -15,6 +16,9 @@
 namespace dupin {
 
 class GlStateGuard;
+class Layer;
+struct LayerPass;
+struct Variant;  // of a shading program
 
 /// What is out of range in a caller's options.
 Status check(const DrawOptions& options);
@@ -29,6 +33,7 @@ enum Unit {
   kIndicesUnit,
   kTriangleFacesUnit,
   kRunsUnit,
+  kLayerUnit,                      ///< the first of four for layers
   kRectanglesUnit = kVerticesUnit  // not in one program
 };
 
@@ -79,6 +84,7 @@ class Renderer::Impl {
   const GlTexture& picture(Picture picture) const { return pictures_[picture]; }
   GLuint shading_framebuffer() const { return shading_framebuffer_.name(); }
   const GlTexture& ids() const { return ids_; }
+  const GlTexture& depth() const { return depth_; }
   const DrawList& draw_list() const { return list_; }
   /// Reads a picture of the last pass, row 0 first.
   void read(Picture picture, GLenum format, GLenum type, void* pixels);
@@ -89,6 +95,10 @@ class Renderer::Impl {
   /// Sets the uniforms that describe the camera, whichever of them the program in use has.
   void set_view(GLuint program, const ViewRays& view) const;
   const GlVertexArray& empty_array() const { return empty_array_; }
+  /// Ids and depth, and the state that drawing into them starts from.
+  void bind_visibility();
+  /// Primitives that the last pass drew.
+  std::uint32_t drawn_primitives(const Scene::Impl& scene) const;
 
  private:
   void upload_list(const Scene::Impl& scene);
@@ -96,10 +106,16 @@ class Renderer::Impl {
   Status draw_visibility(const Pass& pass);
   Status draw_dps(const Pass& pass);
   Status draw_triangles(const Pass& pass);
+  /// What of the scene's layers is done in this pass.
+  Status each_layer(const Pass& pass, const std::function<Status(Layer&, const LayerPass&)>& what);
   Status shade(const Pass& pass);
   Status bind_shading_framebuffer(unsigned pictures);
   void clear_pictures(const Pass& pass);
-  Status shade_with(const Pass& pass, bool mesh);
+  Status shade_dps(const Pass& pass);
+  Status shade_triangles(const Pass& pass);
+  Status shade_layer(const Pass& pass, Layer& layer, const LayerPass& of_layer);
+  Status use_shading_program(const Pass& pass, const Variant& variant, GLuint& name);
+  void cover_bands(GLuint name);
   void grow_indices(std::uint32_t dps);
 
   std::map<std::string, GlProgram> programs_;

@@ -4,6 +4,7 @@
 
 #include "../core/parallel.h"
 #include "draw_list.h"
+#include "layer.h"
 
 namespace dupin {
 namespace {
@@ -50,12 +51,10 @@ std::size_t piece_count(const QuadricDp& dp) {
 }
 
 /// Numbers the faces that have something to draw, in the part's order; the others get none.
-std::vector<std::uint32_t> number_faces(std::size_t count, const std::vector<bool>& drawn,
-                                        std::uint32_t& total) {
-  std::vector<std::uint32_t> numbers(count, 0);
-  for (std::size_t i = 0; i < count; ++i)
-    if (drawn[i]) numbers[i] = total++;
-  return numbers;
+void number_faces(const std::vector<bool>& drawn, ScenePart& part) {
+  part.face_numbers.assign(drawn.size(), 0);
+  for (std::size_t i = 0; i < drawn.size(); ++i)
+    if (drawn[i]) part.face_numbers[i] = part.drawn_faces++;
 }
 
 bool has_features(const PartDps& part, const QuadricDp& dp) {
@@ -105,14 +104,8 @@ std::uint32_t dp_kind(const PartDps& part, const QuadricDp& dp) {
 }
 
 Status pack_dps(const Part& source, const PartDps& dps, ScenePart& part, SceneInfo& info,
-                std::vector<bool>& drawn, ScenePackage& package) {
+                ScenePackage& package) {
   part.anchor = source.box.empty() ? dps.dps.front().origin : source.box.center();
-  for (const QuadricDp& dp : dps.dps) {
-    if (dp.face >= drawn.size())
-      return {StatusCode::invalid_argument, "a primitive names a face that its part lacks"};
-    drawn[dp.face] = true;
-  }
-  const std::vector<std::uint32_t> numbers = number_faces(source.faces.size(), drawn, part.drawn_faces);
   std::vector<std::unique_ptr<std::array<PlanarCover, 3>>> covers(dps.dps.size());
   parallel_for(
       dps.dps.size(),
@@ -123,19 +116,18 @@ Status pack_dps(const Part& source, const PartDps& dps, ScenePart& part, SceneIn
   for (const QuadricDp& dp : dps.dps) {
     DpBounds bounds = dp_bounds(dps, dp, part.anchor);
     bounds.record = static_cast<std::uint32_t>(package.heap.size());
-    const Status status = encode_dp(dps, dp, part.anchor, numbers[dp.face], package.heap);
+    const Status status = encode_dp(dps, dp, part.anchor, part.face_numbers[dp.face], package.heap);
     if (!status.ok()) return status;
     info.clips += piece_count(dp);
     for (const Vec3& c : corners(dp)) part.box.add(dp.origin + dp.u * c.x + dp.v * c.y + dp.n() * c.z);
     bounds.covers = std::move(covers[part.dps.size()]);
     part.dps.push_back(std::move(bounds));
   }
-  info.primitives += dps.dps.size();
+  part.primitives += static_cast<std::uint32_t>(dps.dps.size());
   return {};
 }
 
-void pack_mesh(const Part& source, ScenePart& part, SceneInfo& info, std::vector<bool>& drawn,
-               ScenePackage& package) {
+void pack_mesh(const Part& source, ScenePart& part, ScenePackage& package) {
   const TriangleMesh& mesh = source.mesh;
   part.anchor = mesh.origin;
   part.first_triangle = static_cast<std::uint32_t>(package.indices.size() / 3);
@@ -148,10 +140,59 @@ void pack_mesh(const Part& source, ScenePart& part, SceneInfo& info, std::vector
     part.box.add(mesh.origin + Vec3{p[0], p[1], p[2]});
   }
   for (const std::uint32_t i : mesh.triangles) package.indices.push_back(first_vertex + i);
-  for (const std::uint32_t f : mesh.faces) drawn[f] = true;
-  const std::vector<std::uint32_t> numbers = number_faces(drawn.size(), drawn, part.drawn_faces);
-  for (const std::uint32_t f : mesh.faces) package.triangle_faces.push_back(numbers[f]);
-  info.primitives += part.triangles;
+  for (const std::uint32_t f : mesh.faces) package.triangle_faces.push_back(part.face_numbers[f]);
+  part.primitives += part.triangles;
+}
+
+/// What there is of one part.
+struct PartContent {
+  const PartDps* dps = nullptr;
+  const TriangleMesh* mesh = nullptr;
+  std::vector<LayerPart> layers;
+};
+
+PartContent content_of(const Model& model, std::size_t index, const DpScene* dps, const Scene::Impl& scene) {
+  const Part& source = model.parts[index];
+  PartContent content;
+  bool by_layers = false;
+  for (const auto& layer : scene.layers) {
+    content.layers.push_back(layer->part(index));
+    by_layers |= !content.layers.back().box.empty();
+  }
+  const bool by_dps = dps && !source.faces.empty();
+  if (by_dps && !dps->parts[index].dps.empty()) content.dps = &dps->parts[index];
+  if (!by_dps && !by_layers && !source.mesh.triangles.empty()) content.mesh = &source.mesh;
+  return content;
+}
+
+/// Which faces of the part anything is drawn of. What is drawn of a part without faces is one face.
+Status mark_faces(const Part& source, const PartContent& content, std::vector<bool>& drawn) {
+  bool valid = true;
+  const auto mark = [&](std::uint32_t face) {
+    valid &= face < drawn.size();
+    if (face < drawn.size()) drawn[face] = true;
+  };
+  const bool faceless = source.faces.empty();
+  drawn.assign(faceless ? 1 : source.faces.size(), false);
+  if (content.dps)
+    for (const QuadricDp& dp : content.dps->dps) mark(dp.face);
+  if (content.mesh)
+    for (const std::uint32_t face : content.mesh->faces) mark(face);
+  for (const LayerPart& layer : content.layers)
+    for (const std::uint32_t face : layer.faces) mark(face);
+  if (!valid) return {StatusCode::invalid_argument, "a primitive names a face that its part lacks"};
+  return {};
+}
+
+void pack_layers(const PartContent& content, ScenePart& part) {
+  for (const LayerPart& layer : content.layers) {
+    part.first_in_layer.push_back(part.primitives);
+    if (layer.box.empty()) continue;
+    if (part.primitives == 0) part.anchor = layer.anchor;
+    part.primitives += layer.primitives;
+    part.layer_box.add(layer.box);
+  }
+  part.box.add(part.layer_box);
 }
 
 /// The columns' lengths bound how a placement stretches directions well enough for proxies.
@@ -185,7 +226,7 @@ void place(const Model& model, const Instance& instance, const std::vector<std::
       scene.faces.push_back({index, static_cast<std::uint32_t>(f)});
       package.colors.push_back(placed.face_colors.empty() ? placed.color : placed.face_colors[f]);
     }
-  scene.info.placed_primitives += part.dps.size() + part.triangles;
+  scene.info.placed_primitives += part.primitives;
   scene.box.add(transform_box(instance.to_world, part.box));
   scene.instances.push_back(std::move(placed));
 }
@@ -219,23 +260,24 @@ Status pack_scene(const Model& model, const DpScene* dps, Scene::Impl& scene, Sc
   std::vector<std::vector<bool>> drawn(model.parts.size());
   for (std::size_t i = 0; i < model.parts.size(); ++i) {
     const Part& source = model.parts[i];
+    const PartContent content = content_of(model, i, dps, scene);
+    Status status = mark_faces(source, content, drawn[i]);
+    if (!status.ok()) return status;
     ScenePart part;
     part.closed = source.closed;
-    const bool by_mesh = !dps || source.faces.empty();
-    // A mesh part without faces is one face.
-    drawn[i].assign(source.faces.empty() && !source.mesh.triangles.empty() ? 1 : source.faces.size(), false);
-    if (!by_mesh && !dps->parts[i].dps.empty()) {
-      const Status status = pack_dps(source, dps->parts[i], part, scene.info, drawn[i], package);
-      if (!status.ok()) return status;
-    } else if (by_mesh && !source.mesh.triangles.empty()) {
-      pack_mesh(source, part, scene.info, drawn[i], package);
-    }
+    number_faces(drawn[i], part);
+    if (content.dps) status = pack_dps(source, *content.dps, part, scene.info, package);
+    if (!status.ok()) return status;
+    if (content.mesh) pack_mesh(source, part, package);
+    pack_layers(content, part);
+    scene.info.primitives += part.primitives;
     scene.parts.push_back(std::move(part));
   }
   for (const Instance& instance : model.instances) place(model, instance, drawn, scene, package);
   scene.info.drawn_faces = scene.faces.size();
   scene.info.bytes = package.heap.size() * sizeof(Texel) + package.vertices.size() * 4 +
                      package.indices.size() * 4 + package.triangle_faces.size() * 4;
+  for (const auto& layer : scene.layers) scene.info.bytes += layer->bytes();
   return {};
 }
 

@@ -36,6 +36,10 @@ struct ScenePart {
   std::vector<DpBounds> dps;
   std::uint32_t drawn_faces = 0;
   std::uint32_t first_triangle = 0, triangles = 0;
+  std::uint32_t primitives = 0;               ///< of all kinds
+  Box3 layer_box;                             ///< of what layers have of it
+  std::vector<std::uint32_t> first_in_layer;  ///< per layer: primitives of this part before the layer's
+  std::vector<std::uint32_t> face_numbers;    ///< per face of the part: its number among the drawn ones
 };
 
 struct SceneInstance {
@@ -53,6 +57,8 @@ struct FaceName {
   std::uint32_t instance = 0, face = 0;
 };
 
+class Layer;
+
 class Scene::Impl {
  public:
   std::shared_ptr<const Gl> gl;  ///< outlives the buffers below
@@ -67,9 +73,11 @@ class Scene::Impl {
   TexelBuffer triangle_faces;  ///< R32UI: the drawn face's number in its part
   TexelBuffer colors;          ///< R32UI: of every drawn face instance; for triangles
   GlVertexArray mesh_array;
+  std::vector<std::shared_ptr<Layer>> layers;  ///< their own buffers go before `gl` does
 };
 
-/// What does not need a context: everything of the Impl but its buffers, with the bytes to put into them.
+/// What does not need a context: everything of the Impl but its buffers, with the bytes to put into them; its
+/// layers are there already.
 struct ScenePackage {
   std::vector<Texel> heap;
   std::vector<float> vertices;

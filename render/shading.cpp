@@ -5,7 +5,7 @@
 // the shader runs.
 #include <limits>
 
-#include "renderer_impl.h"
+#include "layer.h"
 
 namespace dupin {
 namespace {
@@ -35,22 +35,27 @@ std::uint32_t srgb_word(const Color& c) {
   return byte(c.r) | byte(c.g) << 8 | byte(c.b) << 16 | 0xff000000U;
 }
 
-/// Adds a #define to the program and to the name that it is found by.
+}  // namespace
+
 struct Variant {
   ProgramText text;
   std::string key;
+  /// Adds a #define to the program and to the name that it is found by.
   void define(const std::string& what) {
     text.defines.push_back(what);
     key += ' ' + what;
   }
 };
 
-Variant shading_variant(unsigned pictures, const DrawOptions& options, bool mesh) {
+namespace {
+
+/// A program that writes these pictures of what `surface` finds.
+Variant shading_variant(unsigned pictures, const DrawOptions& options, const LayerShading& surface) {
   const bool color = pictures & (1U << kColorPicture | 1U << kScreenPicture),
              curves = pictures & 1U << kCurvaturePicture;
   const bool numbers = pictures & 1U << kNumbersPicture;
   Variant v;
-  v.key = mesh ? "shade mesh" : "shade";
+  v.key = "shade " + surface.key;
   int location = 0;
   for (int i = 0; i < kPictures; ++i)
     if (pictures & 1U << i) v.define(std::string(kLocations[i]) + ' ' + std::to_string(location++));
@@ -61,14 +66,11 @@ Variant shading_variant(unsigned pictures, const DrawOptions& options, bool mesh
   if (curves || (color && needs_curvature(options.shading))) v.define("CURVES");
   if (numbers || (color && options.shading == Shading::primitive)) v.define("NUMBERS");
   if (numbers) v.define("NUMBERS_PICTURE");
+  for (const std::string& define : surface.defines) v.define(define);
+  v.text.units = surface.units;
   v.text.vertex = {"screen.vert"};
-  v.text.fragment = {"shade_head.glsl", "quadric.glsl"};
-  if (mesh) {
-    v.text.fragment.push_back("surface_mesh.glsl");
-    v.text.units.push_back({"colors", kHeapUnit});  // triangles need no heap
-  } else {
-    v.text.fragment.push_back("surface_dp.glsl");
-  }
+  v.text.fragment = {"shade_head.glsl"};
+  v.text.fragment.insert(v.text.fragment.end(), surface.surface.begin(), surface.surface.end());
   v.text.fragment.push_back("looks.glsl");
   v.text.fragment.push_back("shade.frag");
   return v;
@@ -125,7 +127,6 @@ Status Renderer::Impl::shade(const Pass& pass) {
   gl->ActiveTexture(GL_TEXTURE0 + kIdsUnit);
   gl->BindTexture(GL_TEXTURE_2D, ids_.name());
   if (pass.first) clear_pictures(pass);
-  const bool mesh = !list_.runs.empty(), dps = !list_.items.empty();
   gl->Enable(GL_DEPTH_TEST);
   gl->DepthFunc(GL_LESS);
   gl->DepthMask(GL_FALSE);
@@ -134,8 +135,11 @@ Status Renderer::Impl::shade(const Pass& pass) {
     gl->BlendEquationSeparate(GL_FUNC_ADD, GL_FUNC_ADD);
     gl->BlendFuncSeparate(GL_ONE, GL_ONE, GL_ONE, GL_ONE);
   }
-  if (dps) status = shade_with(pass, false);
-  if (status.ok() && mesh) status = shade_with(pass, true);
+  status = shade_dps(pass);
+  if (status.ok()) status = shade_triangles(pass);
+  if (status.ok())
+    status =
+        each_layer(pass, [&](Layer& layer, const LayerPass& own) { return shade_layer(pass, layer, own); });
   gl->Disablei(GL_BLEND, 0);
   gl->Disable(GL_FRAMEBUFFER_SRGB);
   return status;
@@ -158,26 +162,23 @@ Status Renderer::Impl::resolve(const ViewRays& view, int samples) {
   return {};
 }
 
-Status Renderer::Impl::shade_with(const Pass& pass, bool mesh) {
+/// Leaves the program in use, with what all of them share set.
+Status Renderer::Impl::use_shading_program(const Pass& pass, const Variant& variant, GLuint& name) {
   const DrawOptions& options = *pass.options;
-  const Variant variant = shading_variant(pass.pictures, options, mesh);
-  const auto name = program(variant.key, variant.text);
-  if (!name) return name.status();
-  set_view(*name, pass.view);
-  const auto uniform = [&](const char* n) { return gl->GetUniformLocation(*name, n); };
+  const auto built = program(variant.key, variant.text);
+  if (!built) return built.status();
+  name = *built;
+  set_view(name, pass.view);
+  const auto uniform = [&](const char* n) { return gl->GetUniformLocation(name, n); };
   const Color under = pass.samples > 1 ? premultiplied_background(options) : Color{0, 0, 0, 0};
   gl->Uniform4f(uniform("under"), under.r, under.g, under.b, under.a);
   gl->Uniform1f(uniform("curvature_scale"), static_cast<float>(curvature_scale(*pass.scene, options)));
   gl->Uniform1ui(uniform("only_color"), options.color ? srgb_word(*options.color) : 0);
-  gl->Uniform1i(uniform("run_count"), static_cast<GLint>(list_.runs.size()));
-  if (mesh) {
-    pass.scene->vertices.bind(kVerticesUnit);
-    pass.scene->indices.bind(kIndicesUnit);
-    pass.scene->triangle_faces.bind(kTriangleFacesUnit);
-    pass.scene->colors.bind(kHeapUnit);
-    runs_.bind(kRunsUnit);
-  }
-  gl->Uniform1f(uniform("screen_depth"), list_.covered_depth());
+  return {};
+}
+
+void Renderer::Impl::cover_bands(GLuint name) {
+  gl->Uniform1f(gl->GetUniformLocation(name, "screen_depth"), list_.covered_depth());
   gl->Enable(GL_SCISSOR_TEST);
   for (std::size_t b = 0; b < list_.bands.size(); ++b) {
     const auto [first, last] = list_.bands[b];
@@ -186,6 +187,47 @@ Status Renderer::Impl::shade_with(const Pass& pass, bool mesh) {
     gl->DrawArrays(GL_TRIANGLES, 0, 3);
   }
   gl->Disable(GL_SCISSOR_TEST);
+}
+
+Status Renderer::Impl::shade_dps(const Pass& pass) {
+  if (list_.items.empty()) return {};
+  static const LayerShading kSurface{"", {"quadric.glsl", "surface_dp.glsl"}, {}, {}};
+  GLuint name = 0;
+  const Status status =
+      use_shading_program(pass, shading_variant(pass.pictures, *pass.options, kSurface), name);
+  if (status.ok()) cover_bands(name);
+  return status;
+}
+
+Status Renderer::Impl::shade_triangles(const Pass& pass) {
+  if (list_.runs.empty()) return {};
+  // Triangles need no heap.
+  static const LayerShading kSurface{"mesh", {"runs.glsl", "surface_mesh.glsl"}, {}, {{"colors", kHeapUnit}}};
+  GLuint name = 0;
+  const Status status =
+      use_shading_program(pass, shading_variant(pass.pictures, *pass.options, kSurface), name);
+  if (!status.ok()) return status;
+  gl->Uniform1i(gl->GetUniformLocation(name, "run_count"), static_cast<GLint>(list_.runs.size()));
+  pass.scene->vertices.bind(kVerticesUnit);
+  pass.scene->indices.bind(kIndicesUnit);
+  pass.scene->triangle_faces.bind(kTriangleFacesUnit);
+  pass.scene->colors.bind(kHeapUnit);
+  runs_.bind(kRunsUnit);
+  cover_bands(name);
+  return {};
+}
+
+Status Renderer::Impl::shade_layer(const Pass& pass, Layer& layer, const LayerPass& own) {
+  if (layer.drawn() == 0) return {};
+  LayerShading surface = layer.shading();
+  surface.surface.insert(surface.surface.begin(), "layer.glsl");
+  surface.defines.push_back(layer_define(own.layer));
+  GLuint name = 0;
+  const Status status =
+      use_shading_program(pass, shading_variant(pass.pictures, *pass.options, surface), name);
+  if (!status.ok()) return status;
+  layer.bind(own, name);
+  cover_bands(name);
   return {};
 }
 

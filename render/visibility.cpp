@@ -1,5 +1,5 @@
 // The first half of a frame: which primitive is seen at every pixel.
-#include "renderer_impl.h"
+#include "layer.h"
 
 namespace dupin {
 namespace {
@@ -154,7 +154,7 @@ Status Renderer::Impl::draw_triangles(const Pass& pass) {
   return {};
 }
 
-Status Renderer::Impl::draw_visibility(const Pass& pass) {
+void Renderer::Impl::bind_visibility() {
   gl->BindFramebuffer(GL_FRAMEBUFFER, visibility_framebuffer_.name());
   gl->Viewport(0, 0, width_, height_);
   gl->Enable(GL_DEPTH_TEST);
@@ -163,19 +163,43 @@ Status Renderer::Impl::draw_visibility(const Pass& pass) {
   gl->FrontFace(GL_CW);  // the picture's rows run downwards
   gl->CullFace(GL_FRONT);
   if (gl->ClipControl) gl->ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+}
+
+Status Renderer::Impl::each_layer(const Pass& pass,
+                                  const std::function<Status(Layer&, const LayerPass&)>& what) {
+  Status status;
+  for (std::uint32_t i = 0; i < pass.scene->layers.size() && status.ok(); ++i)
+    status = what(*pass.scene->layers[i], {*this, *pass.scene, pass.view, *pass.options, i});
+  return status;
+}
+
+std::uint32_t Renderer::Impl::drawn_primitives(const Scene::Impl& scene) const {
+  std::uint32_t count = list_.primitives();
+  for (const auto& layer : scene.layers) count += layer->drawn();
+  return count;
+}
+
+Status Renderer::Impl::draw_visibility(const Pass& pass) {
+  bind_visibility();
   const GLuint nothing[4] = {0, 0, 0, 0};
   const GLfloat farthest = 0;
   gl->ClearBufferuiv(GL_COLOR, 0, nothing);
   gl->ClearBufferfv(GL_DEPTH, 0, &farthest);
-  const Status dps = draw_dps(pass);
-  return dps.ok() ? draw_triangles(pass) : dps;
+  Status status = draw_dps(pass);
+  if (status.ok()) status = draw_triangles(pass);
+  if (!status.ok()) return status;
+  return each_layer(pass, [&](Layer& layer, const LayerPass& own) {
+    bind_visibility();
+    return layer.draw(own);
+  });
 }
 
 Status Renderer::Impl::run(const Pass& pass) {
   build_draw_list(*pass.scene, pass.view, flats_, list_);
   view_spread_ = pass.view.perspective ? 1.0F : 0.0F;
   upload_list(*pass.scene);
-  Status status = fill_slots();
+  Status status = each_layer(pass, [](Layer& layer, const LayerPass& own) { return layer.find(own); });
+  if (status.ok()) status = fill_slots();
   if (status.ok()) status = draw_visibility(pass);
   if (status.ok() && pass.pictures) status = shade(pass);
   return status;

@@ -1,19 +1,8 @@
 // A triangle's point under a pixel, with the normal interpolated from its corners.
 uniform samplerBuffer vertices;        // three texels each: x, y | z, nx | ny, nz
 uniform usamplerBuffer indices, triangle_faces, colors;
-uniform usamplerBuffer runs;           // placed meshes: first number, instance, first triangle, first primitive; by first number
-uniform int run_count;
 
-bool is_mine(uint number) { return (number & kTriangle) != 0u; }
-
-uvec4 run_of(uint number) {
-  int lo = 0, hi = run_count - 1;
-  while (lo < hi) {
-    int middle = (lo + hi + 1) >> 1;
-    if (texelFetch(runs, middle).x <= number) lo = middle; else hi = middle - 1;
-  }
-  return texelFetch(runs, lo);
-}
+bool is_mine(uint number) { return number >> 30 == kTriangle >> 30; }
 
 void fetch_vertex(uint index, out vec3 position, out vec3 normal) {
   int at = int(index) * 3;

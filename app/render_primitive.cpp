@@ -1,0 +1,19 @@
+#include "render_primitive.h"
+
+#include <algorithm>
+
+namespace dupin::app {
+
+const std::vector<PrimitiveKind>& primitive_kinds() {
+  static const std::vector<PrimitiveKind> kinds{{{"auto", "quadric"}, make_quadric_primitive},
+                                                {{"triangles"}, make_triangles_primitive}};
+  return kinds;
+}
+
+std::unique_ptr<RenderPrimitive> make_primitive(const RenderOptions& options) {
+  for (const PrimitiveKind& kind : primitive_kinds())
+    if (std::count(kind.names.begin(), kind.names.end(), options.primitive)) return kind.make(options);
+  return nullptr;
+}
+
+}  // namespace dupin::app

@@ -1,0 +1,24 @@
+#ifndef DUPIN_APP_STOPWATCH_H
+#define DUPIN_APP_STOPWATCH_H
+
+#include <chrono>
+
+namespace dupin::app {
+
+/// Seconds since it was made or last asked.
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace dupin::app
+
+#endif
