@@ -23,18 +23,38 @@ struct InfoOptions {
   bool json = false;
 };
 
-/// Face instances by what they lie on and by colour, and the triangles of faces that the file has only as
-/// such.
+/// Face instances by what they lie on and by colour, and what there is of polygons.
 struct Counts {
   std::map<std::string, std::size_t> surfaces, colors;
-  std::size_t triangles = 0;
+  std::size_t vertices = 0, polygons = 0, triangles = 0, loose_points = 0, groups = 0, creases = 0;
+  bool vertex_colors = false, polygon_colors = false, normals = false;
 };
+
+void count_mesh(const PolygonMesh& mesh, const Instance& instance, const Part& part, Counts& counts) {
+  if (mesh.empty()) return;
+  counts.vertices += mesh.positions.size();
+  counts.polygons += mesh.polygon_count();
+  counts.triangles += triangle_count(mesh);
+  counts.loose_points += loose_point_count(mesh);
+  counts.groups += mesh.groups.size();
+  counts.creases += mesh.tags.creases.size();
+  counts.vertex_colors = counts.vertex_colors || !mesh.colors.empty();
+  counts.polygon_colors = counts.polygon_colors || !mesh.polygon_colors.empty();
+  counts.normals = counts.normals || !mesh.normals.empty();
+  for (std::size_t i = 0; i < face_count(mesh); ++i) {
+    ++counts.surfaces[mesh.polygon_count() > 0 ? "mesh" : "points"];
+    std::optional<Color> color = i < mesh.groups.size() ? mesh.groups[i].color : std::nullopt;
+    if (!color) color = instance.color ? instance.color : part.color;
+    const bool own = !mesh.colors.empty() || !mesh.polygon_colors.empty();
+    ++counts.colors[own ? "its own" : color ? hex_color(*color) : "none"];
+  }
+}
 
 Counts count(const Model& model) {
   Counts counts;
   for (const Instance& instance : model.instances) {
     const Part& part = model.parts[instance.part];
-    counts.triangles += part.mesh.triangles.size() / 3;
+    count_mesh(part.polygons, instance, part, counts);
     for (const Face& face : part.faces) {
       ++counts.surfaces[std::string(kind_name(part.surfaces[face.surface]))];
       const auto color = file_color(face, instance, part);
@@ -58,7 +78,16 @@ Json to_json(const Model& model, const std::string& file) {
   json["parts"] = model.parts.size();
   json["instances"] = model.instances.size();
   json["faces"] = {{"total", faces + skipped}, {"readable", faces}, {"by_surface", counts.surfaces}};
-  if (counts.triangles) json["triangles"] = counts.triangles;
+  if (counts.vertices)
+    json["mesh"] = {{"vertices", counts.vertices},
+                    {"polygons", counts.polygons},
+                    {"triangles", counts.triangles},
+                    {"loose_points", counts.loose_points},
+                    {"groups", counts.groups},
+                    {"creases", counts.creases},
+                    {"vertex_colors", counts.vertex_colors},
+                    {"polygon_colors", counts.polygon_colors},
+                    {"normals", counts.normals}};
   const Box3 box = bounding_box(model);
   json["bounding_box"] =
       box.empty() ? Json(nullptr) : Json{{"min", to_json(box.lo)}, {"max", to_json(box.hi)}};
@@ -86,6 +115,19 @@ std::string numbers(const char* format, const Vec3& v) {
   return text;
 }
 
+std::string mesh_text(const Counts& counts) {
+  std::string text =
+      std::to_string(counts.vertices) + " vertices, " + std::to_string(counts.polygons) + " polygons";
+  if (counts.triangles != counts.polygons) text += " (" + std::to_string(counts.triangles) + " triangles)";
+  if (counts.groups)
+    text += ", " + std::to_string(counts.groups) + (counts.groups == 1 ? " group" : " groups");
+  if (counts.loose_points) text += ", " + std::to_string(counts.loose_points) + " vertices without polygons";
+  if (counts.creases) text += ", " + std::to_string(counts.creases) + " creases";
+  if (counts.normals) text += ", normals";
+  return text + (counts.vertex_colors ? ", vertex colours" : "") +
+         (counts.polygon_colors ? ", polygon colours" : "");
+}
+
 void print_table(const Model& model, const std::string& file) {
   const Counts counts = count(model);
   const std::size_t faces = face_instance_count(model), skipped = skipped_count(model.skipped);
@@ -96,7 +138,7 @@ void print_table(const Model& model, const std::string& file) {
       std::to_string(model.parts.size()) + " in " + std::to_string(model.instances.size()) + " instances");
   row("faces",
       std::to_string(faces + skipped) + (counts.surfaces.empty() ? "" : ": " + list(counts.surfaces)));
-  if (counts.triangles) row("triangles", std::to_string(counts.triangles));
+  if (counts.vertices) row("mesh", mesh_text(counts));
   row("colours", counts.colors.empty() ? "none" : list(counts.colors));
   if (const Box3 box = bounding_box(model); !box.empty()) {
     row("box", numbers("%.6g %.6g %.6g", box.lo) + " … " + numbers("%.6g %.6g %.6g", box.hi));
@@ -129,8 +171,8 @@ int run(const InfoOptions& options) {
 
 void add_info_command(CLI::App& app, Command& chosen) {
   const auto options = std::make_shared<InfoOptions>();
-  CLI::App* command = app.add_subcommand("info", "Say what a CAD file holds");
-  command->add_option("FILE", options->file, "STEP, IGES, BREP or FCStd")->required();
+  CLI::App* command = app.add_subcommand("info", "Say what a CAD or mesh file holds");
+  command->add_option("FILE", options->file, "STEP, IGES, BREP, FCStd, OBJ, PLY, STL or OFF")->required();
   command->add_flag("--json", options->json, "As JSON, for programs");
   add_common_options(*command, options->common);
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });

@@ -123,7 +123,9 @@ Color RenderOptions::background_color() const {
 }
 
 void add_render_options(CLI::App& command, RenderOptions& options) {
-  command.add_option("FILE", options.files, "STEP, IGES, BREP or FCStd; several become one picture")
+  command
+      .add_option("FILE", options.files,
+                  "STEP, IGES, BREP, FCStd, OBJ, PLY, STL or OFF; several become one picture")
       ->required();
   command.add_option("-o,--output", options.output, "The picture: .png or .exr")
       ->required()

@@ -46,7 +46,7 @@ Status check_kind(const std::string& path) {
   if (!kind.ok()) return kind.status();
   if (*kind == FileKind::empty) return {StatusCode::unreadable, path + ": the file is empty"};
   if (*kind == FileKind::unknown)
-    return {StatusCode::unreadable, path + ": not a STEP, IGES, BREP or FCStd file"};
+    return {StatusCode::unreadable, path + ": not a " + std::string(kSupportedKinds) + " file"};
   return {};
 }
 

@@ -1,4 +1,4 @@
-// Reading CAD files into a Model, in a child process with limits.
+// Reading CAD and mesh files into a Model, in a child process with limits.
 #ifndef DUPIN_CAD_IMPORT_CAD_IMPORT_H
 #define DUPIN_CAD_IMPORT_CAD_IMPORT_H
 
@@ -24,9 +24,10 @@ struct ImportOptions {
   Progress progress;
 };
 
-/// Reads STEP, IGES, BREP (also gzip-compressed) and FCStd. The file's kind is found from its content, not
-/// its name. Never throws, never lets a crash or a hang of the kernel through: a reader that dies or exceeds
-/// a limit is reported as such.
+/// Reads STEP, IGES, BREP and FCStd, and the polygons of OBJ, PLY, STL and OFF; all but FCStd may be
+/// compressed by gzip. The file's kind is found from its content; its name is asked only where a mesh's
+/// content says nothing. Never throws, never lets a crash or a hang of the kernel through: a reader that dies
+/// or exceeds a limit is reported as such.
 Result<Model> import_cad(const std::string& path, const ImportOptions& options);
 
 }  // namespace dupin

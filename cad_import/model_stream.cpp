@@ -149,6 +149,27 @@ void write(Writer& out, const TriangleMesh& mesh) {
   out.pod(mesh.origin);
 }
 
+void write(Writer& out, const PolygonMesh& mesh) {
+  out.pods(mesh.positions);
+  out.pods(mesh.corners);
+  out.pods(mesh.starts);
+  out.pods(mesh.normals);
+  out.pods(mesh.corner_normals);
+  out.pods(mesh.colors);
+  out.pods(mesh.polygon_colors);
+  write_list(out, mesh.groups, [&](const MeshGroup& g) {
+    out.text(g.name);
+    write(out, g.color);
+  });
+  out.pods(mesh.polygon_groups);
+  out.pods(mesh.tags.creases);
+  out.pods(mesh.tags.corners);
+  out.pods(mesh.tags.holes);
+  out.pod(mesh.tags.boundary);
+  out.boolean(mesh.tags.chaikin);
+  out.boolean(mesh.tags.smooth_triangles);
+}
+
 void write(Writer& out, const Part& part) {
   out.text(part.name);
   write(out, part.color);
@@ -156,6 +177,7 @@ void write(Writer& out, const Part& part) {
   write_list(out, part.edges, [&](const Edge& e) { write(out, e); });
   write_list(out, part.faces, [&](const Face& f) { write(out, f); });
   out.boolean(part.closed);
+  write(out, part.polygons);
   out.pod(part.box);
   write(out, part.mesh);
 }
@@ -340,6 +362,33 @@ void read(Reader& in, TriangleMesh& mesh) {
   mesh.origin = in.pod<Vec3>();
 }
 
+void read(Reader& in, SubdivisionTags& tags) {
+  in.pods(tags.creases);
+  in.pods(tags.corners);
+  in.pods(tags.holes);
+  const auto boundary = in.pod<std::uint8_t>();
+  if (boundary > static_cast<std::uint8_t>(SubdivisionTags::Boundary::edges)) return in.fail();
+  tags.boundary = static_cast<SubdivisionTags::Boundary>(boundary);
+  tags.chaikin = in.boolean();
+  tags.smooth_triangles = in.boolean();
+}
+
+void read(Reader& in, PolygonMesh& mesh) {
+  in.pods(mesh.positions);
+  in.pods(mesh.corners);
+  in.pods(mesh.starts);
+  in.pods(mesh.normals);
+  in.pods(mesh.corner_normals);
+  in.pods(mesh.colors);
+  in.pods(mesh.polygon_colors);
+  read_list(in, mesh.groups, 9, [&](MeshGroup& g) {
+    in.text(g.name);
+    read(in, g.color);
+  });
+  in.pods(mesh.polygon_groups);
+  read(in, mesh.tags);
+}
+
 void read(Reader& in, Part& part) {
   in.text(part.name);
   read(in, part.color);
@@ -347,6 +396,7 @@ void read(Reader& in, Part& part) {
   read_list(in, part.edges, 16, [&](Edge& e) { read(in, e); });
   read_list(in, part.faces, 16, [&](Face& f) { read(in, f); });
   part.closed = in.boolean();
+  read(in, part.polygons);
   part.box = in.pod<Box3>();
   read(in, part.mesh);
 }

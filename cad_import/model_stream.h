@@ -16,7 +16,7 @@
 
 namespace dupin {
 
-inline constexpr std::uint32_t kModelStreamVersion = 1;
+inline constexpr std::uint32_t kModelStreamVersion = 2;
 /// Magic, version, length of the payload, checksum of the payload.
 inline constexpr std::size_t kModelStreamHeaderBytes = 32;
 /// Offsets of offsets of … that are still read.

@@ -2,9 +2,13 @@
 
 namespace dupin {
 
+std::size_t face_count(const Part& part) {
+  return part.faces.size() + face_count(part.polygons);
+}
+
 std::size_t face_instance_count(const Model& model) {
   std::size_t count = 0;
-  for (const Instance& instance : model.instances) count += model.parts[instance.part].faces.size();
+  for (const Instance& instance : model.instances) count += face_count(model.parts[instance.part]);
   return count;
 }
 

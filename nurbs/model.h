@@ -1,4 +1,4 @@
-// What a CAD file holds, in our own terms: parts with exact faces, placed by instances.
+// What a CAD file holds, in our own terms: parts with exact faces or polygons, placed by instances.
 //
 // Geometry is stored once a part; an assembly's repeated parts are instances. Faces refer to surfaces, and
 // edges to curves, by index within their part. Lengths are millimetres unless `unit_note` says otherwise.
@@ -19,15 +19,12 @@
 
 #include "../core/status.h"
 #include "../core/vec.h"
+#include "color.h"
 #include "curve.h"
+#include "polygon_mesh.h"
 #include "surface.h"
 
 namespace dupin {
-
-struct Color {
-  float r = 0, g = 0, b = 0, a = 1;  ///< linear light, straight alpha
-  friend bool operator==(const Color&, const Color&) = default;
-};
 
 /// A curve shared by the faces that meet in it.
 struct Edge {
@@ -69,8 +66,7 @@ struct Face {
   std::string name;
 };
 
-/// A face's, or a whole mesh part's, triangles: the tessellated reference, or faces that a file has only as
-/// triangles.
+/// The tessellated reference of a part's faces.
 struct TriangleMesh {
   std::vector<std::array<float, 3>> positions;  ///< relative to `origin`
   std::vector<std::array<float, 3>> normals;    ///< unit, outward; as many as positions
@@ -87,8 +83,10 @@ struct Part {
   std::vector<Face> faces;
   bool closed =
       false;  ///< the faces bound a solid without a gap, normals outward: turned-away faces are never seen
-  Box3 box;   ///< contains every face
-  TriangleMesh mesh;  ///< only when a tessellation was asked for
+  /// What the file has as polygons or points, besides or instead of exact faces; empty for most parts.
+  PolygonMesh polygons;
+  Box3 box;           ///< contains every face, polygon and point
+  TriangleMesh mesh;  ///< only when a tessellation was asked for; of `faces` alone
 };
 
 struct Instance {
@@ -115,6 +113,8 @@ struct Model {
   double mesh_seconds = 0;         ///< what the tessellation took, when one was asked for
 };
 
+/// A part's faces: exact ones, then the groups of its polygons.
+std::size_t face_count(const Part& part);
 /// Face instances: every instance's faces, drawn ones only (those in `skipped` are not among them).
 std::size_t face_instance_count(const Model& model);
 /// Every instance placed; empty for an empty model.

@@ -229,6 +229,7 @@ Status check_part(const Part& part, std::size_t index) {
   for (std::size_t i = 0; i < part.faces.size(); ++i)
     if (Reason reason = check_face(part, part.faces[i])) return failure("face", i, where, reason);
   if (Reason reason = check_mesh(part.mesh, part.faces.size())) return failure("part", index, "", reason);
+  if (Status mesh = check(part.polygons); !mesh.ok()) return failure("part", index, "", mesh.message.c_str());
   if (!part.box.empty() && !(finite(part.box.lo) && finite(part.box.hi)))
     return failure("part", index, "", "its box is not finite");
   return {};

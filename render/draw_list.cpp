@@ -326,7 +326,8 @@ void build_draw_list(const Scene::Impl& scene, const ViewRays& view, bool flats,
     if (part.primitives == 0) continue;
     const PartCamera camera = part_camera(instance, part, view, sides);
     if (part.triangles) {
-      list.runs.push_back({index, part.first_triangle, part.triangles, instance.first_primitive});
+      list.runs.push_back({index, part.first_triangle, part.triangles,
+                           instance.first_primitive + static_cast<std::uint32_t>(part.dps.size())});
       footprints.add(camera, part.box.center() - part.anchor, part.box.diagonal() / 2);
     }
     if (!part.layer_box.empty())

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "../core/parallel.h"
+#include "../nurbs/mesh_triangles.h"
 #include "draw_list.h"
 #include "layer.h"
 
@@ -103,9 +104,7 @@ std::uint32_t dp_kind(const PartDps& part, const QuadricDp& dp) {
   return kind | kCurvedKind | features * kFeaturesKind;
 }
 
-Status pack_dps(const Part& source, const PartDps& dps, ScenePart& part, SceneInfo& info,
-                ScenePackage& package) {
-  part.anchor = source.box.empty() ? dps.dps.front().origin : source.box.center();
+Status pack_dps(const PartDps& dps, ScenePart& part, SceneInfo& info, ScenePackage& package) {
   std::vector<std::unique_ptr<std::array<PlanarCover, 3>>> covers(dps.dps.size());
   parallel_for(
       dps.dps.size(),
@@ -127,27 +126,31 @@ Status pack_dps(const Part& source, const PartDps& dps, ScenePart& part, SceneIn
   return {};
 }
 
-void pack_mesh(const Part& source, ScenePart& part, ScenePackage& package) {
-  const TriangleMesh& mesh = source.mesh;
-  part.anchor = mesh.origin;
-  part.first_triangle = static_cast<std::uint32_t>(package.indices.size() / 3);
-  part.triangles = static_cast<std::uint32_t>(mesh.triangles.size() / 3);
+/// `first_face`: the index in the part of the mesh's first face.
+void pack_mesh(const TriangleMesh& mesh, std::size_t first_face, ScenePart& part, ScenePackage& package) {
+  if (part.triangles == 0) part.first_triangle = static_cast<std::uint32_t>(package.indices.size() / 3);
+  const auto triangles = static_cast<std::uint32_t>(mesh.triangles.size() / 3);
   const auto first_vertex = static_cast<std::uint32_t>(package.vertices.size() / 6);
+  const Vec3 shift = mesh.origin - part.anchor;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const auto& p = mesh.positions[i];
     const auto& n = mesh.normals[i];
-    package.vertices.insert(package.vertices.end(), {p[0], p[1], p[2], n[0], n[1], n[2]});
+    const Vec3 q = shift + Vec3{p[0], p[1], p[2]};
+    package.vertices.insert(package.vertices.end(), {static_cast<float>(q.x), static_cast<float>(q.y),
+                                                     static_cast<float>(q.z), n[0], n[1], n[2]});
     part.box.add(mesh.origin + Vec3{p[0], p[1], p[2]});
   }
   for (const std::uint32_t i : mesh.triangles) package.indices.push_back(first_vertex + i);
-  for (const std::uint32_t f : mesh.faces) package.triangle_faces.push_back(part.face_numbers[f]);
-  part.primitives += part.triangles;
+  for (const std::uint32_t f : mesh.faces) package.triangle_faces.push_back(part.face_numbers[first_face + f]);
+  part.triangles += triangles;
+  part.primitives += triangles;
 }
 
 /// What there is of one part.
 struct PartContent {
   const PartDps* dps = nullptr;
   const TriangleMesh* mesh = nullptr;
+  const PolygonMesh* polygons = nullptr;  ///< drawn as triangles
   std::vector<LayerPart> layers;
 };
 
@@ -162,26 +165,35 @@ PartContent content_of(const Model& model, std::size_t index, const DpScene* dps
   const bool by_dps = dps && !source.faces.empty();
   if (by_dps && !dps->parts[index].dps.empty()) content.dps = &dps->parts[index];
   if (!by_dps && !by_layers && !source.mesh.triangles.empty()) content.mesh = &source.mesh;
+  if (!by_layers && source.polygons.polygon_count() > 0) content.polygons = &source.polygons;
   return content;
 }
 
-/// Which faces of the part anything is drawn of. What is drawn of a part without faces is one face.
+/// Which faces of the part anything is drawn of; the groups of its polygons come after its exact ones. What is
+/// drawn of a part without faces is one face.
 Status mark_faces(const Part& source, const PartContent& content, std::vector<bool>& drawn) {
   bool valid = true;
   const auto mark = [&](std::uint32_t face) {
     valid &= face < drawn.size();
     if (face < drawn.size()) drawn[face] = true;
   };
-  const bool faceless = source.faces.empty();
-  drawn.assign(faceless ? 1 : source.faces.size(), false);
+  drawn.assign(std::max<std::size_t>(1, face_count(source)), false);
   if (content.dps)
     for (const QuadricDp& dp : content.dps->dps) mark(dp.face);
   if (content.mesh)
     for (const std::uint32_t face : content.mesh->faces) mark(face);
+  for (std::size_t i = 0; content.polygons && i < content.polygons->polygon_count(); ++i)
+    mark(static_cast<std::uint32_t>(source.faces.size() + content.polygons->group_of(i)));
   for (const LayerPart& layer : content.layers)
     for (const std::uint32_t face : layer.faces) mark(face);
   if (!valid) return {StatusCode::invalid_argument, "a primitive names a face that its part lacks"};
   return {};
+}
+
+/// The layers' own wish counts where nothing else is drawn (pack_layers).
+Vec3 anchor_of(const Part& source, const PartContent& content) {
+  if (!source.box.empty()) return source.box.center();
+  return content.dps ? content.dps->dps.front().origin : content.mesh ? content.mesh->origin : Vec3{};
 }
 
 void pack_layers(const PartContent& content, ScenePart& part) {
@@ -193,6 +205,14 @@ void pack_layers(const PartContent& content, ScenePart& part) {
     part.layer_box.add(layer.box);
   }
   part.box.add(part.layer_box);
+}
+
+/// What the file says of the face itself.
+std::optional<Color> own_color(const Part& part, std::size_t face) {
+  if (face < part.faces.size()) return part.faces[face].color;
+  const std::vector<MeshGroup>& groups = part.polygons.groups;
+  const std::size_t group = face - part.faces.size();
+  return group < groups.size() ? groups[group].color : std::nullopt;
 }
 
 /// The columns' lengths bound how a placement stretches directions well enough for proxies.
@@ -214,13 +234,14 @@ void place(const Model& model, const Instance& instance, const std::vector<std::
   placed.scale_ratio = scale_ratio(instance.to_world.linear);
   const Color own = instance.color ? *instance.color : source.color ? *source.color : kDefaultColor;
   placed.color = packed(own);
-  const bool own_colors = std::any_of(source.faces.begin(), source.faces.end(),
-                                      [](const Face& f) { return f.color.has_value(); });
-  if (own_colors)
-    for (const Face& face : source.faces)
-      placed.face_colors.push_back(face.color ? packed(*face.color) : placed.color);
   const auto index = static_cast<std::uint32_t>(scene.instances.size());
   const std::vector<bool>& faces = drawn[instance.part];
+  bool own_colors = false;
+  for (std::size_t f = 0; f < faces.size(); ++f) own_colors = own_colors || own_color(source, f);
+  for (std::size_t f = 0; own_colors && f < faces.size(); ++f) {
+    const std::optional<Color> color = own_color(source, f);
+    placed.face_colors.push_back(color ? packed(*color) : placed.color);
+  }
   for (std::size_t f = 0; f < faces.size(); ++f)
     if (faces[f]) {
       scene.faces.push_back({index, static_cast<std::uint32_t>(f)});
@@ -265,10 +286,13 @@ Status pack_scene(const Model& model, const DpScene* dps, Scene::Impl& scene, Sc
     if (!status.ok()) return status;
     ScenePart part;
     part.closed = source.closed;
+    part.anchor = anchor_of(source, content);
     number_faces(drawn[i], part);
-    if (content.dps) status = pack_dps(source, *content.dps, part, scene.info, package);
+    if (content.dps) status = pack_dps(*content.dps, part, scene.info, package);
     if (!status.ok()) return status;
-    if (content.mesh) pack_mesh(source, part, package);
+    if (content.mesh) pack_mesh(*content.mesh, 0, part, package);
+    if (content.polygons)
+      pack_mesh(to_triangle_mesh(*content.polygons, part.anchor), source.faces.size(), part, package);
     pack_layers(content, part);
     scene.info.primitives += part.primitives;
     scene.parts.push_back(std::move(part));

@@ -62,6 +62,14 @@ Model one_of_everything() {
   part.mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   part.mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
   part.mesh.triangles = {0, 1, 2}, part.mesh.faces = {0}, part.mesh.origin = {1, 2, 3};
+  PolygonMesh& polygons = part.polygons;
+  polygons.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}};
+  polygons.corners = {0, 1, 2, 3, 0, 1, 4}, polygons.starts = {0, 4, 7};
+  polygons.normals = {{0, 0, 1}}, polygons.corner_normals = {0, 0, 0, 0, PolygonMesh::kNoNormal, 0, 0};
+  polygons.colors.resize(5, Rgba8{1, 2, 3, 255}), polygons.polygon_colors = {{9, 8, 7, 6}, {5, 4, 3, 2}};
+  polygons.groups = {{"a", Color{0, 0, 1, 1}}, {"b", std::nullopt}}, polygons.polygon_groups = {1, 0};
+  polygons.tags.creases = {{0, 1, 2.5F}}, polygons.tags.corners = {{2, 10}}, polygons.tags.holes = {1};
+  polygons.tags.boundary = SubdivisionTags::Boundary::edges, polygons.tags.chaikin = true;
   Instance& instance = model.instances.emplace_back();
   instance.to_world.translation = {4, 5, 6}, instance.color = Color{0, 1, 0, 1}, instance.name = "a/b";
   model.skipped.push_back({"face 2", "because", 3});
@@ -94,6 +102,9 @@ TEST(ModelStream, ComesBackAsItWent) {
   EXPECT_EQ(back->instances[0].to_world, model.instances[0].to_world);
   EXPECT_EQ(back->skipped[0].count, 3u);
   EXPECT_EQ(back->notes, model.notes);
+  EXPECT_EQ(back->parts[0].polygons.starts, model.parts[0].polygons.starts);
+  EXPECT_EQ(back->parts[0].polygons.groups[0].color, model.parts[0].polygons.groups[0].color);
+  EXPECT_EQ(back->parts[0].polygons.tags.corners[0].sharpness, 10);
   EXPECT_EQ(back->parts[0].mesh.triangles, model.parts[0].mesh.triangles);
 }
 
