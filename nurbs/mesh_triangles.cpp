@@ -37,10 +37,11 @@ class EarCutter {
       points_.push_back({mesh.positions[v][x], side * mesh.positions[v][y]});
   }
 
+  /// A doubled point may hide a turn.
   bool is_convex() const {
     const std::size_t n = points_.size();
     for (std::size_t i = 0; i < n; ++i)
-      if (turn(i, (i + 1) % n, (i + 2) % n) < 0) return false;
+      if (points_[i] == points_[(i + 1) % n] || turn(i, (i + 1) % n, (i + 2) % n) < 0) return false;
     return true;
   }
 
@@ -137,8 +138,8 @@ std::vector<WeightedNormal> polygon_normals(const PolygonMesh& mesh) {
   return result;
 }
 
-/// Smooth normals at one vertex. Around a vertex of so many polygons that looking at every pair would take long, the
-/// polygons are put into a few clusters instead.
+/// Smooth normals at one vertex. Around a vertex of so many polygons that looking at every pair would take
+/// long, the polygons are put into a few clusters instead.
 class VertexNormals {
  public:
   VertexNormals(std::span<const std::uint32_t> corners, const std::vector<WeightedNormal>& around,
@@ -166,7 +167,8 @@ class VertexNormals {
       const bool degenerate = length(own) == 0;
       Vec3 sum;
       for (const std::uint32_t k : corners_)
-        if (degenerate || dot(around_[k].unit, own) >= least_cosine()) sum += around_[k].unit * around_[k].angle;
+        if (degenerate || dot(around_[k].unit, own) >= least_cosine())
+          sum += around_[k].unit * around_[k].angle;
       out_[c] = to_float(normalized(sum));
     }
   }
@@ -182,7 +184,8 @@ class VertexNormals {
       cluster[i] = std::min(k, first.size() - 1);
       sum[cluster[i]] += w.unit * w.angle;
     }
-    for (std::size_t i = 0; i < corners_.size(); ++i) out_[corners_[i]] = to_float(normalized(sum[cluster[i]]));
+    for (std::size_t i = 0; i < corners_.size(); ++i)
+      out_[corners_[i]] = to_float(normalized(sum[cluster[i]]));
   }
 
   std::span<const std::uint32_t> corners_;
@@ -220,7 +223,8 @@ struct SplitVertices {
 
  private:
   static constexpr std::uint32_t kMostTried = 64;  ///< of a vertex's own before a double is taken
-  std::uint32_t find(std::uint32_t corner, std::uint32_t first, const std::vector<std::array<float, 3>>& normals) {
+  std::uint32_t find(std::uint32_t corner, std::uint32_t first,
+                     const std::vector<std::array<float, 3>>& normals) {
     const auto last = static_cast<std::uint32_t>(corner_of.size());
     for (std::uint32_t k = last; k > first && last - k < kMostTried; --k)
       if (normals[corner_of[k - 1]] == normals[corner]) return k - 1;
@@ -270,7 +274,8 @@ std::vector<std::array<float, 3>> corner_normals(const PolygonMesh& mesh) {
         mesh.positions.size(),
         [&](std::size_t v) {
           const std::uint32_t first = incidence.starts[v], last = incidence.starts[v + 1];
-          if (first < last) VertexNormals({incidence.corners.data() + first, last - first}, around, result).run();
+          if (first < last)
+            VertexNormals({incidence.corners.data() + first, last - first}, around, result).run();
         },
         kGrain);
   }

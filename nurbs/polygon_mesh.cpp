@@ -59,7 +59,8 @@ Reason check_tags(const PolygonMesh& mesh) {
     if (crease.a >= vertices || crease.b >= vertices || !std::isfinite(crease.sharpness))
       return "a crease refers to no vertex";
   for (const auto& corner : mesh.tags.corners)
-    if (corner.vertex >= vertices || !std::isfinite(corner.sharpness)) return "a corner tag refers to no vertex";
+    if (corner.vertex >= vertices || !std::isfinite(corner.sharpness))
+      return "a corner tag refers to no vertex";
   return in_range(mesh.tags.holes, mesh.polygon_count()) ? nullptr : "a hole refers to no polygon";
 }
 

@@ -1,8 +1,8 @@
 // Polygons as a file has them: a scan, an export, or the control cage of a subdivision surface.
 //
-// A mesh is kept as it is: polygons of any size, in the file's order and orientation, may share vertices or not, may
-// touch in any way (non-manifold edges, islands, doubles) and may be degenerate. Vertices that no polygon uses are
-// points of their own. Lengths are the part's.
+// A mesh is kept as it is: polygons of any size, in the file's order and orientation, may share vertices or
+// not, may touch in any way (non-manifold edges, islands, doubles) and may be degenerate. Vertices that no
+// polygon uses are points of their own. Lengths are the part's.
 #ifndef DUPIN_NURBS_POLYGON_MESH_H
 #define DUPIN_NURBS_POLYGON_MESH_H
 
@@ -27,7 +27,8 @@ struct MeshGroup {
   std::optional<Color> color;  ///< of its material
 };
 
-/// What a file says of a cage for its subdivision. Sharpness is OpenSubdiv's: 0 smooth, 10 and more infinitely sharp.
+/// What a file says of a cage for its subdivision. Sharpness is OpenSubdiv's: 0 smooth, 10 and more
+/// infinitely sharp.
 struct SubdivisionTags {
   enum class Boundary : std::uint8_t { unsaid, none, edges_and_corners, edges };
   struct Crease {
@@ -44,7 +45,9 @@ struct SubdivisionTags {
   Boundary boundary = Boundary::unsaid;
   bool chaikin = false;           ///< creases by Chaikin's rule
   bool smooth_triangles = false;  ///< Catmull–Clark with the weights for triangles
-  bool empty() const { return creases.empty() && corners.empty() && holes.empty() && boundary == Boundary::unsaid; }
+  bool empty() const {
+    return creases.empty() && corners.empty() && holes.empty() && boundary == Boundary::unsaid;
+  }
 };
 
 struct PolygonMesh {
@@ -62,24 +65,27 @@ struct PolygonMesh {
   std::vector<Rgba8> colors;          ///< one a vertex, or empty
   std::vector<Rgba8> polygon_colors;  ///< one a polygon, or empty
 
-  /// Which groups there are, and each polygon's; `polygon_groups` is empty where all polygons are of the first.
+  /// Which groups there are, and each polygon's; `polygon_groups` is empty where all polygons are of the
+  /// first.
   std::vector<MeshGroup> groups;
   std::vector<std::uint32_t> polygon_groups;
 
   SubdivisionTags tags;
 
   bool empty() const { return positions.empty(); }
-  std::size_t polygon_count() const {
-    return !starts.empty() ? starts.size() - 1 : corners.size() / 3;
+  std::size_t polygon_count() const { return !starts.empty() ? starts.size() - 1 : corners.size() / 3; }
+  std::size_t first_corner(std::size_t polygon) const {
+    return starts.empty() ? 3 * polygon : starts[polygon];
   }
-  std::size_t first_corner(std::size_t polygon) const { return starts.empty() ? 3 * polygon : starts[polygon]; }
   std::size_t corner_count(std::size_t polygon) const {
     return starts.empty() ? 3 : starts[polygon + 1] - starts[polygon];
   }
   std::span<const std::uint32_t> polygon(std::size_t i) const {
     return {corners.data() + first_corner(i), corner_count(i)};
   }
-  std::uint32_t group_of(std::size_t polygon) const { return polygon_groups.empty() ? 0 : polygon_groups[polygon]; }
+  std::uint32_t group_of(std::size_t polygon) const {
+    return polygon_groups.empty() ? 0 : polygon_groups[polygon];
+  }
   bool all_triangles() const { return starts.empty(); }
 };
 
@@ -93,8 +99,8 @@ Box3 bounding_box(const PolygonMesh& mesh);
 std::size_t loose_point_count(const PolygonMesh& mesh);
 /// Drops `starts`, `corner_normals` and `polygon_groups` where they say nothing.
 void simplify_layout(PolygonMesh& mesh);
-/// ok if every index is in range, every list of the right length, every number finite and every polygon has at least
-/// three corners; else the first thing that is wrong.
+/// ok if every index is in range, every list of the right length, every number finite and every polygon has
+/// at least three corners; else the first thing that is wrong.
 Status check(const PolygonMesh& mesh);
 
 }  // namespace dupin

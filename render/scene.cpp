@@ -141,7 +141,8 @@ void pack_mesh(const TriangleMesh& mesh, std::size_t first_face, ScenePart& part
     part.box.add(mesh.origin + Vec3{p[0], p[1], p[2]});
   }
   for (const std::uint32_t i : mesh.triangles) package.indices.push_back(first_vertex + i);
-  for (const std::uint32_t f : mesh.faces) package.triangle_faces.push_back(part.face_numbers[first_face + f]);
+  for (const std::uint32_t f : mesh.faces)
+    package.triangle_faces.push_back(part.face_numbers[first_face + f]);
   part.triangles += triangles;
   part.primitives += triangles;
 }
@@ -169,8 +170,8 @@ PartContent content_of(const Model& model, std::size_t index, const DpScene* dps
   return content;
 }
 
-/// Which faces of the part anything is drawn of; the groups of its polygons come after its exact ones. What is
-/// drawn of a part without faces is one face.
+/// Which faces of the part anything is drawn of; the groups of its polygons come after its exact ones. What
+/// is drawn of a part without faces is one face.
 Status mark_faces(const Part& source, const PartContent& content, std::vector<bool>& drawn) {
   bool valid = true;
   const auto mark = [&](std::uint32_t face) {

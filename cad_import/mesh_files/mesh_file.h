@@ -1,8 +1,9 @@
 // Mesh files from their bytes: OBJ, PLY, STL and OFF, without any library behind them.
 //
-// Nothing in the bytes is believed: a count is compared with the bytes that are left before anything is allocated,
-// every index with what it refers to, every number must be finite. What is refused says where: a line of a text, a
-// byte of a binary file. What is accepted is kept as it is: non-manifold, degenerate, doubled.
+// Nothing in the bytes is believed: a count is compared with the bytes that are left before anything is
+// allocated, every index with what it refers to, every number must be finite. What is refused says where: a
+// line of a text, a byte of a binary file. What is accepted is kept as it is: non-manifold, degenerate,
+// doubled.
 #ifndef DUPIN_CAD_IMPORT_MESH_FILES_MESH_FILE_H
 #define DUPIN_CAD_IMPORT_MESH_FILES_MESH_FILE_H
 

@@ -6,7 +6,8 @@
 namespace dupin::mesh_files {
 namespace {
 
-/// "2/1/0": how many numbers of each sort follow. Counts beyond what a line can hold are refused by what is missing.
+/// "2/1/0": how many numbers of each sort follow. Counts beyond what a line can hold are refused by what is
+/// missing.
 bool parse_counts(std::string_view word, std::array<std::int64_t, 3>& counts) {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t slash = word.find('/');
@@ -29,7 +30,8 @@ Status ObjTags::read(TextCursor& text) {
   Tag tag;
   tag.name = std::string(text.word());
   std::array<std::int64_t, 3> counts;
-  if (tag.name.empty() || !parse_counts(text.word(), counts)) return text.failure("a tag has no counts such as 2/1/0");
+  if (tag.name.empty() || !parse_counts(text.word(), counts))
+    return text.failure("a tag has no counts such as 2/1/0");
   for (std::int64_t i = 0; i < counts[0]; ++i) {
     const auto value = to_integer(text.word());
     if (!value) return text.failure("a tag has too few whole numbers");
@@ -71,7 +73,8 @@ void ObjTags::use_crease(const Tag& tag) {
   if (tag.floats.empty()) return;
   for (std::size_t i = 0; i + 1 < tag.ints.size(); ++i) {
     const double sharpness = tag.floats[std::min(i, tag.floats.size() - 1)];
-    tags_.creases.push_back({to_index(tag.ints[i]), to_index(tag.ints[i + 1]), static_cast<float>(sharpness)});
+    tags_.creases.push_back(
+        {to_index(tag.ints[i]), to_index(tag.ints[i + 1]), static_cast<float>(sharpness)});
   }
 }
 
@@ -118,7 +121,8 @@ void ObjTags::finish(const std::vector<std::uint32_t>& polygon_numbers, PolygonM
   mesh.tags = std::move(tags_);
   if (dangling > 0)
     notes.push_back(std::to_string(dangling) + " subdivision tags refer to nothing and are left out");
-  if (unknown_ > 0) notes.push_back(std::to_string(unknown_) + " subdivision tags are of a kind that is not used");
+  if (unknown_ > 0)
+    notes.push_back(std::to_string(unknown_) + " subdivision tags are of a kind that is not used");
 }
 
 }  // namespace dupin::mesh_files

@@ -16,8 +16,8 @@ class ObjTags {
 
   /// The rest of a "t" statement.
   Status read(TextCursor& text);
-  /// Puts them into the mesh, those that refer to what is there; `polygon_numbers` gives a polygon's number in the
-  /// mesh by its number in the file.
+  /// Puts them into the mesh, those that refer to what is there; `polygon_numbers` gives a polygon's number
+  /// in the mesh by its number in the file.
   void finish(const std::vector<std::uint32_t>& polygon_numbers, PolygonMesh& mesh,
               std::vector<std::string>& notes);
 

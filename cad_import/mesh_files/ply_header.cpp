@@ -13,11 +13,21 @@ constexpr std::size_t kMostProperties = 1000, kMostElements = 100;
 
 std::optional<PlyType> to_type(std::string_view word) {
   static constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypes{
-      {{"char", PlyType::int8},      {"int8", PlyType::int8},       {"uchar", PlyType::uint8},
-       {"uint8", PlyType::uint8},    {"short", PlyType::int16},     {"int16", PlyType::int16},
-       {"ushort", PlyType::uint16},  {"uint16", PlyType::uint16},   {"int", PlyType::int32},
-       {"int32", PlyType::int32},    {"uint", PlyType::uint32},     {"uint32", PlyType::uint32},
-       {"float", PlyType::float32},  {"float32", PlyType::float32}, {"double", PlyType::float64},
+      {{"char", PlyType::int8},
+       {"int8", PlyType::int8},
+       {"uchar", PlyType::uint8},
+       {"uint8", PlyType::uint8},
+       {"short", PlyType::int16},
+       {"int16", PlyType::int16},
+       {"ushort", PlyType::uint16},
+       {"uint16", PlyType::uint16},
+       {"int", PlyType::int32},
+       {"int32", PlyType::int32},
+       {"uint", PlyType::uint32},
+       {"uint32", PlyType::uint32},
+       {"float", PlyType::float32},
+       {"float32", PlyType::float32},
+       {"double", PlyType::float64},
        {"float64", PlyType::float64}}};
   for (const auto& [name, type] : kTypes)
     if (word == name) return type;
@@ -84,7 +94,8 @@ class HeaderReader {
     property.list = word == "list";
     if (property.list) {
       const auto count_type = to_type(text_.word());
-      if (!count_type || is_float(*count_type)) return text_.failure("a list's count is of no whole-number type");
+      if (!count_type || is_float(*count_type))
+        return text_.failure("a list's count is of no whole-number type");
       property.count_type = *count_type;
       word = text_.word();
     }

@@ -20,7 +20,8 @@ constexpr std::size_t kMostCorners = std::numeric_limits<std::uint32_t>::max() -
 
 class ObjReader {
  public:
-  ObjReader(std::string_view bytes, const FindFile& find_file) : text_(bytes, 1, true), find_file_(find_file) {}
+  ObjReader(std::string_view bytes, const FindFile& find_file)
+      : text_(bytes, 1, true), find_file_(find_file) {}
 
   Result<MeshFile> run() {
     mesh().starts = {0};
@@ -74,7 +75,8 @@ class ObjReader {
       if (!std::isfinite(*value)) return fail("a vertex is not finite");
       more[count++] = *value;
     }
-    if (count >= 3) colors_.set(mesh().positions.size() - 1, {more[0], more[1], more[2], count == 4 ? more[3] : -1});
+    if (count >= 3)
+      colors_.set(mesh().positions.size() - 1, {more[0], more[1], more[2], count == 4 ? more[3] : -1});
     return true;  // a single fourth number is the weight of free-form curves
   }
 
@@ -105,7 +107,8 @@ class ObjReader {
     return true;
   }
   static std::string refers_to(const char* what, std::int64_t index, std::size_t count) {
-    return "a polygon refers to " + std::string(what) + " " + std::to_string(index) + " of " + std::to_string(count);
+    return "a polygon refers to " + std::string(what) + " " + std::to_string(index) + " of " +
+           std::to_string(count);
   }
   bool is_there(const Ahead& ahead, std::size_t count, const char* what) {
     if (ahead.index < static_cast<std::int64_t>(count)) return true;
@@ -159,8 +162,8 @@ class ObjReader {
   /// A group is what has the same object, group and material.
   std::uint32_t current_group() {
     if (known_group_) return group_number_;
-    const auto [found, is_new] =
-        group_numbers_.try_emplace({object_, group_, material_}, static_cast<std::uint32_t>(mesh().groups.size()));
+    const auto [found, is_new] = group_numbers_.try_emplace({object_, group_, material_},
+                                                            static_cast<std::uint32_t>(mesh().groups.size()));
     if (is_new) {
       const bool both = !object_.empty() && !group_.empty();
       mesh().groups.push_back({both ? object_ + "/" + group_ : object_ + group_, std::nullopt});
@@ -206,9 +209,10 @@ class ObjReader {
   }
 
   void note_others() {
-    static const std::map<std::string, std::string> kMeanings{{"l", "lines"}, {"p", "marked points"},
-                                                              {"vt", "texture coordinates"}};
-    static constexpr std::string_view kFreeForm = " cstype deg bmat step curv curv2 surf parm trim hole scrv sp end con vp ";
+    static const std::map<std::string, std::string> kMeanings{
+        {"l", "lines"}, {"p", "marked points"}, {"vt", "texture coordinates"}};
+    static constexpr std::string_view kFreeForm =
+        " cstype deg bmat step curv curv2 surf parm trim hole scrv sp end con vp ";
     std::size_t free_form = 0;
     for (const auto& [key, count] : others_) {
       if (kFreeForm.find(" " + key + " ") != kFreeForm.npos) free_form += count;

@@ -1,4 +1,5 @@
-// OFF, the text form: [ST][C][N]OFF with three coordinates. Vertices may have normals and colours, faces colours.
+// OFF, the text form: [ST][C][N]OFF with three coordinates. Vertices may have normals and colours, faces
+// colours.
 #include <cmath>
 #include <limits>
 
@@ -43,9 +44,11 @@ class OffReader {
     texture_ = has("ST");
     has("C");
     normals_ = has("N");
-    if (word == "4OFF" || word == "nOFF" || word == "4nOFF") return fail("an OFF file that is not three-dimensional");
+    if (word == "4OFF" || word == "nOFF" || word == "4nOFF")
+      return fail("an OFF file that is not three-dimensional");
     if (word != "OFF") return fail(quoted(whole) + " stands where OFF should");
-    if (TextCursor(text_).rest().starts_with("BINARY")) return fail("a binary OFF file, which is not supported");
+    if (TextCursor(text_).rest().starts_with("BINARY"))
+      return fail("a binary OFF file, which is not supported");
     return true;
   }
 
@@ -54,7 +57,8 @@ class OffReader {
     if (!value || *value < 0) return fail(std::string("the number of ") + what + " is missing");
     out = static_cast<std::size_t>(*value);
     if (out > (text_.bytes_left() + 1) / least_bytes || out >= std::numeric_limits<std::uint32_t>::max())
-      return fail("the header promises " + std::to_string(out) + " " + what + ", more than the file can hold");
+      return fail("the header promises " + std::to_string(out) + " " + what +
+                  ", more than the file can hold");
     return true;
   }
 
@@ -86,19 +90,22 @@ class OffReader {
   bool number(double& out) {
     const std::string_view word = next_word();
     const auto value = to_number(word);
-    if (!value) return fail(word.empty() ? "a vertex has too few numbers" : quoted(word) + " stands where a number should");
+    if (!value)
+      return fail(word.empty() ? "a vertex has too few numbers"
+                               : quoted(word) + " stands where a number should");
     out = *value;
     return std::isfinite(out) || fail("a vertex is not finite");
   }
 
-  /// Three or four numbers at the end of a line, 0 … 1 or 0 … 255; a lone one is an index into a table of colours that
-  /// is not there.
+  /// Three or four numbers at the end of a line, 0 … 1 or 0 … 255; a lone one is an index into a table of
+  /// colours that is not there.
   bool color(std::size_t index, std::size_t unused, VertexColors& colors, bool& seen) {
     double c[16] = {0, 0, 0, -1};
     std::size_t n = 0;
     for (std::string_view word = next_word(); !word.empty(); word = next_word(), ++n) {
       const auto value = to_number(word);
-      if (n == 16 || !value || !std::isfinite(*value)) return fail(quoted(word) + " stands where a colour should");
+      if (n == 16 || !value || !std::isfinite(*value))
+        return fail(quoted(word) + " stands where a colour should");
       c[n] = *value;
     }
     n -= std::min(n, unused);

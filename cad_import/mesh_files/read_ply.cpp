@@ -20,7 +20,8 @@ T swapped(T value) {
   return std::bit_cast<T>(bytes);
 }
 
-/// The body's numbers one after the other, from a text or from binary data. After a failure every number is 0.
+/// The body's numbers one after the other, from a text or from binary data. After a failure every number is
+/// 0.
 class Numbers {
  public:
   Numbers(std::string_view body, const PlyHeader& header)
@@ -32,15 +33,18 @@ class Numbers {
         header_bytes_(header.bytes) {}
 
   bool is_text() const { return format_ == PlyHeader::Format::text; }
-  std::size_t bytes_left() const { return is_text() ? text_.bytes_left() : static_cast<std::size_t>(end_ - at_); }
+  std::size_t bytes_left() const {
+    return is_text() ? text_.bytes_left() : static_cast<std::size_t>(end_ - at_);
+  }
   const Status& status() const { return status_; }
   bool ok() const { return status_.ok(); }
 
   bool fail(std::string_view what) {
     if (!status_.ok()) return false;
     const std::size_t byte = header_bytes_ + static_cast<std::size_t>(at_ - begin_);
-    status_ = is_text() ? text_.failure(what)
-                        : Status{StatusCode::unreadable, "byte " + std::to_string(byte) + ": " + std::string(what)};
+    status_ = is_text()
+                  ? text_.failure(what)
+                  : Status{StatusCode::unreadable, "byte " + std::to_string(byte) + ": " + std::string(what)};
     return false;
   }
 
@@ -102,14 +106,38 @@ class Numbers {
 };
 
 /// What a scalar property is for.
-enum Use : int { kX, kY, kZ, kNormalX, kNormalY, kNormalZ, kRed, kGreen, kBlue, kAlpha, kUses, kUnused = kUses };
+enum Use : int {
+  kX,
+  kY,
+  kZ,
+  kNormalX,
+  kNormalY,
+  kNormalZ,
+  kRed,
+  kGreen,
+  kBlue,
+  kAlpha,
+  kUses,
+  kUnused = kUses
+};
 
 Use use_of(const std::string& name) {
-  static constexpr std::pair<const char*, Use> kNames[] = {
-      {"x", kX},           {"y", kY},          {"z", kZ},           {"nx", kNormalX}, {"ny", kNormalY},
-      {"nz", kNormalZ},    {"red", kRed},      {"green", kGreen},   {"blue", kBlue},  {"alpha", kAlpha},
-      {"diffuse_red", kRed}, {"diffuse_green", kGreen}, {"diffuse_blue", kBlue}, {"r", kRed}, {"g", kGreen},
-      {"b", kBlue}};
+  static constexpr std::pair<const char*, Use> kNames[] = {{"x", kX},
+                                                           {"y", kY},
+                                                           {"z", kZ},
+                                                           {"nx", kNormalX},
+                                                           {"ny", kNormalY},
+                                                           {"nz", kNormalZ},
+                                                           {"red", kRed},
+                                                           {"green", kGreen},
+                                                           {"blue", kBlue},
+                                                           {"alpha", kAlpha},
+                                                           {"diffuse_red", kRed},
+                                                           {"diffuse_green", kGreen},
+                                                           {"diffuse_blue", kBlue},
+                                                           {"r", kRed},
+                                                           {"g", kGreen},
+                                                           {"b", kBlue}};
   for (const auto& [known, use] : kNames)
     if (name == known) return use;
   return kUnused;
@@ -123,7 +151,9 @@ double color_scale(PlyType type) {
 /// The scalars of one vertex or face that mean something, whichever of them it has.
 struct Scalars {
   double value[kUses + 1] = {};
-  Rgba8 color() const { return {to_byte(value[kRed]), to_byte(value[kGreen]), to_byte(value[kBlue]), to_byte(value[kAlpha])}; }
+  Rgba8 color() const {
+    return {to_byte(value[kRed]), to_byte(value[kGreen]), to_byte(value[kBlue]), to_byte(value[kAlpha])};
+  }
 };
 
 /// How an element's properties are read.
@@ -173,8 +203,8 @@ class PlyReader {
     const std::size_t least = element.least_bytes(numbers_.is_text());
     // The last number of a text may have no blank behind it.
     if (element.count > 0 && (least == 0 || element.count > (numbers_.bytes_left() + 1) / least))
-      return numbers_.fail("the header promises " + std::to_string(element.count) + " of " + quoted(element.name) +
-                           ", more than the file can hold");
+      return numbers_.fail("the header promises " + std::to_string(element.count) + " of " +
+                           quoted(element.name) + ", more than the file can hold");
     if (element.count > std::numeric_limits<std::uint32_t>::max() - 1)
       return numbers_.fail("more than 4 billion of " + quoted(element.name));
     if (is_vertex && !plan.has_position()) return numbers_.fail("the vertices lack x, y or z");
@@ -227,7 +257,8 @@ class PlyReader {
       Vec3 normal{s.value[kNormalX], s.value[kNormalY], s.value[kNormalZ]};
       if (!numbers_.ok()) return false;
       if (!is_finite(p)) return numbers_.fail("vertex " + std::to_string(i) + " is not finite");
-      if (!is_finite(normal)) return numbers_.fail("the normal of vertex " + std::to_string(i) + " is not finite");
+      if (!is_finite(normal))
+        return numbers_.fail("the normal of vertex " + std::to_string(i) + " is not finite");
       mesh().positions.push_back(p);
       normal = normalized(normal);
       if (plan.has_normal())
@@ -268,7 +299,8 @@ class PlyReader {
     return true;
   }
 
-  /// Vertices may come after faces: what a face refers to is checked at the end, but for those that come before.
+  /// Vertices may come after faces: what a face refers to is checked at the end, but for those that come
+  /// before.
   bool add_polygon(std::uint64_t number) {
     if (list_.size() < 3) {
       ++small_;

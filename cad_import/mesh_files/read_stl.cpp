@@ -18,8 +18,8 @@ bool same_word(std::string_view word, std::string_view lower) {
                     [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
 }
 
-/// solid NAME / facet normal x y z / outer loop / vertex x y z … / endloop / endfacet / endsolid: the words that carry
-/// something are solid, loop, vertex and their ends.
+/// solid NAME / facet normal x y z / outer loop / vertex x y z … / endloop / endfacet / endsolid: the words
+/// that carry something are solid, loop, vertex and their ends.
 class TextReader {
  public:
   explicit TextReader(std::string_view bytes) : text_(bytes), welder_(mesh().positions) {}
@@ -84,7 +84,8 @@ class TextReader {
   bool end_loop() {
     if (!in_loop_) return fail("a loop ends that did not begin");
     in_loop_ = false;
-    if (mesh().corners.size() - mesh().starts.back() < 3) return fail("a facet has fewer than three vertices");
+    if (mesh().corners.size() - mesh().starts.back() < 3)
+      return fail("a facet has fewer than three vertices");
     mesh().starts.push_back(static_cast<std::uint32_t>(mesh().corners.size()));
     mesh().polygon_groups.push_back(solid_);
     return true;
@@ -106,8 +107,9 @@ class TextReader {
   bool in_loop_ = false;
 };
 
-/// Fifteen bits of colour in the two bytes that the format leaves over: VisCAM's are b, g, r from the top and bit 15
-/// says that they are there; Magics' are the other way round, and bit 15 says that the whole part's colour holds.
+/// Fifteen bits of colour in the two bytes that the format leaves over: VisCAM's are b, g, r from the top and
+/// bit 15 says that they are there; Magics' are the other way round, and bit 15 says that the whole part's
+/// colour holds.
 class FacetColors {
  public:
   explicit FacetColors(std::string_view header) {
@@ -128,7 +130,9 @@ class FacetColors {
  private:
   Rgba8 missing() const { return magics_ ? whole_ : Rgba8{160, 160, 160, 255}; }
   Rgba8 color(std::uint16_t word) const {
-    const auto part = [word](int shift) { return static_cast<std::uint8_t>((word >> shift & 31) * 255 / 31); };
+    const auto part = [word](int shift) {
+      return static_cast<std::uint8_t>((word >> shift & 31) * 255 / 31);
+    };
     return magics_ ? Rgba8{part(0), part(5), part(10), 255} : Rgba8{part(10), part(5), part(0), 255};
   }
   bool magics_ = false;
@@ -143,7 +147,8 @@ Result<MeshFile> read_stl_text(std::string_view bytes) {
 }
 
 Result<MeshFile> read_stl_binary(std::string_view bytes) {
-  if (bytes.size() < stl_bytes(0)) return {StatusCode::unreadable, "the STL file is cut off within its header"};
+  if (bytes.size() < stl_bytes(0))
+    return {StatusCode::unreadable, "the STL file is cut off within its header"};
   std::uint32_t count;
   std::memcpy(&count, bytes.data() + 80, 4);
   if (bytes.size() < stl_bytes(count))
@@ -173,7 +178,8 @@ Result<MeshFile> read_stl_binary(std::string_view bytes) {
   }
   mesh.polygon_colors = colors.take(count);
   if (bytes.size() > stl_bytes(count))
-    file.notes.push_back(std::to_string(bytes.size() - stl_bytes(count)) + " bytes behind the triangles are not used");
+    file.notes.push_back(std::to_string(bytes.size() - stl_bytes(count)) +
+                         " bytes behind the triangles are not used");
   return file;
 }
 

@@ -18,15 +18,16 @@ bool is_digit(char c) {
 constexpr double kPowers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                               1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
-/// A decimal with few digits is a whole number times or over a power of ten that are both exact doubles, so one
-/// operation rounds it correctly (Clinger). None for any other word.
+/// A decimal with few digits is a whole number times or over a power of ten that are both exact doubles, so
+/// one operation rounds it correctly (Clinger). None for any other word.
 std::optional<double> short_number(const char* at, const char* end) {
   const bool negative = at < end && *at == '-';
   if (at < end && (*at == '-' || *at == '+')) ++at;
   std::uint64_t digits = 0;
   int count = 0, point = 0;
   const char* const first = at;
-  for (; at < end && is_digit(*at); ++at, ++count) digits = 10 * digits + static_cast<std::uint64_t>(*at - '0');
+  for (; at < end && is_digit(*at); ++at, ++count)
+    digits = 10 * digits + static_cast<std::uint64_t>(*at - '0');
   const bool whole = at > first;
   if (at < end && *at == '.')
     for (++at; at < end && is_digit(*at); ++at, ++count, ++point)

@@ -62,8 +62,8 @@ std::optional<std::string> neighbour(const std::filesystem::path& mesh, std::str
 Result<mesh_files::MeshFile> read(const MeshRequest& request, std::string_view bytes) {
   switch (request.kind) {
     case FileKind::obj:
-      return mesh_files::read_obj(
-          bytes, [&](std::string_view name) { return neighbour(request.named_path, name); });
+      return mesh_files::read_obj(bytes,
+                                  [&](std::string_view name) { return neighbour(request.named_path, name); });
     case FileKind::ply:
       return mesh_files::read_ply(bytes);
     case FileKind::stl_text:

@@ -64,8 +64,9 @@ const std::string kStlText =
     "solid other\n facet normal 0 0 1\n  outer loop\n   vertex 1 0 0\n   vertex 1 1 0\n   vertex 0 1 -0\n"
     "  endloop\n endfacet\nendsolid other\n";
 
-std::string stl_binary(std::uint16_t attribute = 0, std::string header = "made by hand") {
-  header.resize(80, '\0');
+std::string stl_binary(std::uint16_t attribute = 0, const std::string& title = "made by hand") {
+  std::string header(80, '\0');
+  std::copy(title.begin(), title.end(), header.begin());
   put<std::uint32_t>(header, 2);
   const float corners[2][9] = {{0, 0, 0, 1, 0, 0, 0, 1, 0}, {1, 0, 0, 1, 1, 0, 0, 1, 0}};
   for (const auto& triangle : corners) {
@@ -111,7 +112,8 @@ TEST(MeshFiles, ObjKeepsPolygonsGroupsColoursNormalsAndTags) {
   EXPECT_EQ(mesh.normals[0], (std::array<float, 3>{0, 0, 1}));
   EXPECT_EQ(mesh.corner_normals[3], 0u);
   EXPECT_EQ(mesh.corner_normals[4], PolygonMesh::kNoNormal);
-  ASSERT_EQ(mesh.tags.creases.size(), 3u) << "two edges of the chain; the one that refers to nothing is dropped";
+  ASSERT_EQ(mesh.tags.creases.size(), 3u)
+      << "two edges of the chain; the one that refers to nothing is dropped";
   EXPECT_EQ(mesh.tags.creases[2].sharpness, 2);
   EXPECT_EQ(mesh.tags.corners[0].vertex, 3u);
   EXPECT_EQ(mesh.tags.holes, std::vector<std::uint32_t>{1});
@@ -152,8 +154,8 @@ TEST(MeshFiles, OffMayHaveColoursOfFacesAndVertices) {
   EXPECT_EQ(mesh.polygon_count(), 2u);
   EXPECT_EQ(mesh.polygon_colors[0], (Rgba8{255, 0, 0, 255}));
   EXPECT_EQ(mesh.corner_count(0), 4u);
-  const PolygonMesh colored =
-      mesh_of(read_off("CNOFF 3 1 3\n0 0 0 0 0 1 1 0 0 1\n1 0 0 0 0 1 0 1 0 1\n0 1 0 0 0 1 0 0 1 0.5\n3 0 1 2\n"));
+  const PolygonMesh colored = mesh_of(
+      read_off("CNOFF 3 1 3\n0 0 0 0 0 1 1 0 0 1\n1 0 0 0 0 1 0 1 0 1\n0 1 0 0 0 1 0 0 1 0.5\n3 0 1 2\n"));
   EXPECT_EQ(colored.colors[2], (Rgba8{0, 0, 255, 128}));
   EXPECT_EQ(colored.normals.size(), 3u);
 }
@@ -169,7 +171,8 @@ TEST(MeshFiles, StlCornersAtOnePlaceAreOneVertex) {
 }
 
 TEST(MeshFiles, StlColoursOfBothKinds) {
-  EXPECT_EQ(mesh_of(read_stl_binary(stl_binary(0x8000 | 31 << 10))).polygon_colors[0], (Rgba8{255, 0, 0, 255}));
+  EXPECT_EQ(mesh_of(read_stl_binary(stl_binary(0x8000 | 31 << 10))).polygon_colors[0],
+            (Rgba8{255, 0, 0, 255}));
   const std::string magics = std::string("COLOR=\x10\x20\x30\xff", 10);
   EXPECT_EQ(mesh_of(read_stl_binary(stl_binary(31, magics))).polygon_colors[1], (Rgba8{255, 0, 0, 255}));
   EXPECT_EQ(mesh_of(read_stl_binary(stl_binary(0x8000, magics))).polygon_colors[0], (Rgba8{16, 32, 48, 255}));
@@ -194,14 +197,16 @@ TEST(MeshFiles, RefusalsSayWhere) {
   expect_refused(read_obj("v 0 0 0\nf 1//1 1//1 1//1\n"), "normal 1 of 0");
   expect_refused(read_obj("v 0 0\n"), "line 1: a vertex has too few numbers");
   expect_refused(read_obj("v 0 0 0x\n"), "'0x'");
-  expect_refused(read_ply(ply_header("ascii") + "0 0 inf 0 0 0 1\n" + std::string(99, ' ')), "vertex 0 is not finite");
+  expect_refused(read_ply(ply_header("ascii") + "0 0 inf 0 0 0 1\n" + std::string(99, ' ')),
+                 "vertex 0 is not finite");
   expect_refused(read_ply(ply_header("ascii") + "0 0 0 0 0 0 1\n0 0 0 0 0 0 1\n0 0 0 0 0 0 1\n3 0 1 3\n"),
                  "line 18: face 0 refers to vertex 3 of 3");
   expect_refused(read_ply(ply_header("ascii") + "0 0 0 0 0 0 1\n"), "the file can hold");
   std::string cut = ply_binary(false);
   cut.resize(cut.size() - 3);
   expect_refused(read_ply(cut), "byte " + std::to_string(ply_binary(false).size() - 12));
-  expect_refused(read_off("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), "line 6: a face refers to vertex 3 of 3");
+  expect_refused(read_off("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
+                 "line 6: a face refers to vertex 3 of 3");
   expect_refused(read_off("4OFF\n1 0 0\n0 0 0 0\n"), "three-dimensional");
   expect_refused(read_stl_text("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 inf\n"), "line 4");
   expect_refused(read_stl_text("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nendloop\n"), "line 5");
@@ -254,7 +259,7 @@ void expect_survives(const char* name, const std::string& good, const ReadFile& 
         }
         default:
           bytes.erase(below(bytes.size()), below(20));
-          if (bytes.empty()) bytes = "x";
+          if (bytes.empty()) bytes.push_back('x');
       }
     const Result<MeshFile> file = read(bytes);
     if (file.ok()) {

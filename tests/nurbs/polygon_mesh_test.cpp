@@ -40,14 +40,16 @@ PolygonMesh cone(std::uint32_t n) {
   return mesh;
 }
 
-/// Each triangle's area vector, against the polygon's: ears of a simple polygon neither overlap nor leave anything out.
+/// Each triangle's area vector, against the polygon's: ears of a simple polygon neither overlap nor leave
+/// anything out.
 void expect_covers(const PolygonMesh& mesh) {
   const std::vector<std::uint32_t> triangles = triangulate(mesh);
   ASSERT_EQ(triangles.size(), 3 * (mesh.corners.size() - 2));
   const Vec3 whole = area_vector(mesh, 0);
   Vec3 sum;
   for (std::size_t i = 0; i < triangles.size(); i += 3) {
-    const Vec3 a = mesh.positions[mesh.corners[triangles[i]]], b = mesh.positions[mesh.corners[triangles[i + 1]]],
+    const Vec3 a = mesh.positions[mesh.corners[triangles[i]]],
+               b = mesh.positions[mesh.corners[triangles[i + 1]]],
                c = mesh.positions[mesh.corners[triangles[i + 2]]];
     const Vec3 n = cross(b - a, c - a);
     EXPECT_GE(dot(n, whole), -1e-12 * dot(whole, whole)) << "triangle " << i / 3 << " is turned over";
@@ -103,9 +105,11 @@ TEST(PolygonMesh, APartsPolygonsAreCheckedWithIt) {
 
 TEST(MeshTriangles, ConcavePolygonsAreCoveredExactly) {
   expect_covers(one_polygon({{0, 0, 1}, {4, 0, 1}, {4, 3, 1}, {2, 1, 1}, {0, 3, 1}}));
-  expect_covers(one_polygon({{0, 0, 0}, {0, 5, 0}, {0, 5, 5}, {0, 4, 5}, {0, 4, 1}, {0, 1, 1}, {0, 1, 5}, {0, 0, 5}}));
+  expect_covers(
+      one_polygon({{0, 0, 0}, {0, 5, 0}, {0, 5, 5}, {0, 4, 5}, {0, 4, 1}, {0, 1, 1}, {0, 1, 5}, {0, 0, 5}}));
   // Points on straight sides, and one that is there twice.
-  expect_covers(one_polygon({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {1, 1, 0}, {1, 1, 0}, {0, 1, 0}}));
+  expect_covers(
+      one_polygon({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {1, 1, 0}, {1, 1, 0}, {0, 1, 0}}));
 }
 
 TEST(MeshTriangles, RandomStarsAreCoveredExactly) {
@@ -130,7 +134,8 @@ TEST(MeshTriangles, PolygonsThatNoEarCanBeCutFromStillMakeTheirTriangles) {
   EXPECT_EQ(triangulate(point).size(), 9u);
   // A comb of many teeth, which naive ear cutting takes its square of time for.
   std::vector<Vec3> comb;
-  for (int i = 0; i < 20000; ++i) comb.push_back({double(i), i % 2 ? 1.0 : 5.0, 0}), comb.push_back({i + 0.5, 0, 0});
+  for (int i = 0; i < 20000; ++i)
+    comb.push_back({double(i), i % 2 ? 1.0 : 5.0, 0}), comb.push_back({i + 0.5, 0, 0});
   EXPECT_EQ(triangulate(one_polygon(comb)).size(), 3 * (comb.size() - 2));
 }
 
