@@ -22,7 +22,7 @@ std::string read_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-Outcome run_dupin(const std::vector<std::string>& arguments) {
+Outcome run_dupin(const std::vector<std::string>& arguments, const Environment& environment) {
   const Folder folder;
   const std::string out = folder.path("out"), err = folder.path("err");
   std::vector<char*> argv{const_cast<char*>(DUPIN_COMMAND)};
@@ -34,6 +34,7 @@ Outcome run_dupin(const std::vector<std::string>& arguments) {
     dup2(open("/dev/null", O_RDONLY), 0);
     dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), 1);
     dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), 2);
+    for (const auto& [name, value] : environment) setenv(name, value, 1);
     execv(argv[0], argv.data());
     _exit(127);
   }

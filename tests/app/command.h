@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace dupin::test {
@@ -16,8 +17,9 @@ struct Outcome {
   int error_lines() const;
 };
 
-/// `dupin ARGUMENTS…`; standard input is empty.
-Outcome run_dupin(const std::vector<std::string>& arguments);
+/// `dupin ARGUMENTS…`; standard input is empty. `environment`: what is set besides this process's own.
+using Environment = std::vector<std::pair<const char*, const char*>>;
+Outcome run_dupin(const std::vector<std::string>& arguments, const Environment& environment = {});
 
 /// An empty folder, removed with all it holds.
 class Folder {
