@@ -1,7 +1,7 @@
-// Frame times of whole pictures: quadric DPs beside triangles at 2.5e-4 and 1e-5 of the diagonal, drawn by the same
-// renderer with the same camera and shading. The three kinds take turns within each file, so that a busy moment of the
-// machine hits all of them; medians count. Processor time, of all threads, is shown too: it hardly depends on what else
-// the machine does.
+// Frame times of whole pictures: quadric DPs beside triangles at 2.5e-4 and 1e-5 of the diagonal, drawn by
+// the same renderer with the same camera and shading. The three kinds take turns within each file, so that a
+// busy moment of the machine hits all of them; medians count. Processor time, of all threads, is shown too:
+// it hardly depends on what else the machine does.
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
@@ -145,7 +145,8 @@ struct Bench {
 };
 
 std::vector<std::string> files_of(const std::vector<std::string>& paths) {
-  static const std::vector<std::string> kEndings{".step", ".stp", ".iges", ".igs", ".brep", ".brp", ".fcstd", ".gz"};
+  static const std::vector<std::string> kEndings{".step", ".stp", ".iges",  ".igs",
+                                                 ".brep", ".brp", ".fcstd", ".gz"};
   std::vector<std::string> files;
   for (const std::string& path : paths) {
     if (!fs::is_directory(path)) {
@@ -156,7 +157,8 @@ std::vector<std::string> files_of(const std::vector<std::string>& paths) {
       std::string ending = entry.path().extension().string();
       std::transform(ending.begin(), ending.end(), ending.begin(),
                      [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-      if (std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end()) files.push_back(entry.path().string());
+      if (std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end())
+        files.push_back(entry.path().string());
     }
   }
   std::sort(files.begin(), files.end());
@@ -175,8 +177,8 @@ void print_row(const std::string& path, const Json& row) {
     const auto bytes = [&](const Kind& kind) {
       return row.contains(kind.name) ? row[kind.name]["bytes"].get<double>() : 0.0;
     };
-    std::printf(" %7zu %8.1f KB %6.1f %%\n", row["quadric"]["primitives"].get<std::size_t>(), bytes(kKinds[0]) / 1e3,
-                100 * bytes(kKinds[0]) / std::max(1.0, bytes(kKinds[1])));
+    std::printf(" %7zu %8.1f KB %6.1f %%\n", row["quadric"]["primitives"].get<std::size_t>(),
+                bytes(kKinds[0]) / 1e3, 100 * bytes(kKinds[0]) / std::max(1.0, bytes(kKinds[1])));
   }
   std::fflush(stdout);
 }
@@ -189,14 +191,16 @@ void print_summary(const std::vector<Json>& rows) {
         if (row.contains(kKinds[k].name))
           ratios.push_back(row[kKinds[k].name][number].get<double>() / row["quadric"][number].get<double>());
       if (!ratios.empty())
-        std::printf("median over %zu files: quadric DPs %.2f times as fast as triangles at %s (%s)\n", ratios.size(),
-                    median(ratios), kKinds[k].name, number);
+        std::printf("median over %zu files: quadric DPs %.2f times as fast as triangles at %s (%s)\n",
+                    ratios.size(), median(ratios), kKinds[k].name, number);
     }
   std::vector<double> bytes;
   for (const Json& row : rows)
     if (row.contains("2.5e-4"))
-      bytes.push_back(row["quadric"]["bytes"].get<double>() / std::max(1.0, row["2.5e-4"]["bytes"].get<double>()));
-  if (!bytes.empty()) std::printf("median over the files: %.1f %% of the triangles' bytes at 2.5e-4\n", 100 * median(bytes));
+      bytes.push_back(row["quadric"]["bytes"].get<double>() /
+                      std::max(1.0, row["2.5e-4"]["bytes"].get<double>()));
+  if (!bytes.empty())
+    std::printf("median over the files: %.1f %% of the triangles' bytes at 2.5e-4\n", 100 * median(bytes));
 }
 
 int run(const Options& options) {
@@ -214,7 +218,8 @@ int run(const Options& options) {
   if (!options.output.empty()) output.open(options.output);
   std::printf("%-40s %26s %26s\n%-40s", "on", bench.renderer->gl_renderer().c_str(), "", "file");
   for (const char* number : {"ms", "cpu"})
-    for (const Kind& kind : kKinds) std::printf(" %8s", (std::string(number) + ' ' + kind.name).substr(0, 8).c_str());
+    for (const Kind& kind : kKinds)
+      std::printf(" %8s", (std::string(number) + ' ' + kind.name).substr(0, 8).c_str());
   std::printf("     DPs  their bytes, of 2.5e-4's\n");
   std::vector<Json> rows;
   for (const std::string& file : files) {

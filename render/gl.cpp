@@ -23,6 +23,19 @@ bool has_extension(const Gl& gl, const char* wanted) {
   return false;
 }
 
+void load_indexed(Gl& gl, const GetProcAddress& get, int version) {
+  if (version >= 40) {
+    load(gl.BlendFuncSeparatei, get, "glBlendFuncSeparatei");
+    load(gl.BlendEquationSeparatei, get, "glBlendEquationSeparatei");
+  }
+  if (version < 41) return;
+  load(gl.ViewportIndexedf, get, "glViewportIndexedf");
+  load(gl.ScissorIndexed, get, "glScissorIndexed");
+  load(gl.DepthRangeIndexed, get, "glDepthRangeIndexed");
+  load(gl.GetFloati_v, get, "glGetFloati_v");
+  load(gl.GetDoublei_v, get, "glGetDoublei_v");
+}
+
 }  // namespace
 
 Result<Gl> load_gl(const GetProcAddress& get_proc_address) {
@@ -43,6 +56,7 @@ Result<Gl> load_gl(const GetProcAddress& get_proc_address) {
   if (!missing.empty()) return {StatusCode::no_device, "the OpenGL context lacks " + missing};
   if (major * 10 + minor >= 45 || has_extension(gl, "GL_ARB_clip_control"))
     load(gl.ClipControl, get_proc_address, "glClipControl");
+  load_indexed(gl, get_proc_address, major * 10 + minor);
   return gl;
 }
 

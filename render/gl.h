@@ -55,6 +55,15 @@ struct Gl {
 #undef DUPIN_GL_MEMBER
   /// Clip space [0,1] in depth, for a reversed depth buffer; null before OpenGL 4.5 without ARB_clip_control.
   PFNGLCLIPCONTROLPROC ClipControl = nullptr;
+  // State that later versions keep by draw buffer (4.0) and by viewport (4.1), and earlier functions set for
+  // all of them; null before.
+  PFNGLBLENDFUNCSEPARATEIPROC BlendFuncSeparatei = nullptr;
+  PFNGLBLENDEQUATIONSEPARATEIPROC BlendEquationSeparatei = nullptr;
+  PFNGLVIEWPORTINDEXEDFPROC ViewportIndexedf = nullptr;
+  PFNGLSCISSORINDEXEDPROC ScissorIndexed = nullptr;
+  PFNGLDEPTHRANGEINDEXEDPROC DepthRangeIndexed = nullptr;
+  PFNGLGETFLOATI_VPROC GetFloati_v = nullptr;
+  PFNGLGETDOUBLEI_VPROC GetDoublei_v = nullptr;
 };
 
 /// The table of the current context; fails with no_device if it is older than 3.3 or a function is missing.

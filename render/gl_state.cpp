@@ -84,12 +84,58 @@ void GlStateGuard::take_fixed_function() {
   gl_.GetIntegerv(GL_FRONT_FACE, &front_face_);
   gl_.GetIntegerv(GL_VIEWPORT, viewport_.data());
   gl_.GetIntegerv(GL_SCISSOR_BOX, scissor_.data());
-  for (std::size_t i = 0; i < blend_state_.size(); ++i) gl_.GetIntegerv(kBlendNames[i], &blend_state_[i]);
+  blend_state_.resize(gl_.BlendFuncSeparatei ? static_cast<std::size_t>(buffers) : 1);
+  for (std::size_t i = 0; i < blend_state_.size(); ++i)
+    for (std::size_t k = 0; k < std::size(kBlendNames); ++k) {
+      GLint& value = blend_state_[i][k];
+      if (gl_.BlendFuncSeparatei) gl_.GetIntegeri_v(kBlendNames[k], static_cast<GLuint>(i), &value);
+      if (!gl_.BlendFuncSeparatei) gl_.GetIntegerv(kBlendNames[k], &value);
+    }
+  take_viewports();
   gl_.GetDoublev(GL_DEPTH_RANGE, depth_range_.data());
   gl_.GetBooleanv(GL_DEPTH_WRITEMASK, &depth_mask_);
   if (!gl_.ClipControl) return;
   gl_.GetIntegerv(GL_CLIP_ORIGIN, &clip_origin_);
   gl_.GetIntegerv(GL_CLIP_DEPTH_MODE, &clip_depth_);
+}
+
+void GlStateGuard::take_viewports() {
+  if (!gl_.ViewportIndexedf) return;
+  GLint count = 1;
+  gl_.GetIntegerv(GL_MAX_VIEWPORTS, &count);
+  for (GLint i = 0; i < count; ++i) {
+    const auto index = static_cast<GLuint>(i);
+    Viewport& viewport = viewports_.emplace_back();
+    gl_.GetFloati_v(GL_VIEWPORT, index, viewport.box.data());
+    gl_.GetIntegeri_v(GL_SCISSOR_BOX, index, viewport.scissor.data());
+    gl_.GetDoublei_v(GL_DEPTH_RANGE, index, viewport.depth_range.data());
+    viewport.scissored = gl_.IsEnabledi(GL_SCISSOR_TEST, index);
+  }
+}
+
+void GlStateGuard::put_back_viewports() const {
+  for (std::size_t i = 0; i < viewports_.size(); ++i) {
+    const auto index = static_cast<GLuint>(i);
+    const auto& [box, scissor, range, scissored] = viewports_[i];
+    gl_.ViewportIndexedf(index, box[0], box[1], box[2], box[3]);
+    gl_.ScissorIndexed(index, scissor[0], scissor[1], scissor[2], scissor[3]);
+    gl_.DepthRangeIndexed(index, range[0], range[1]);
+    (scissored ? gl_.Enablei : gl_.Disablei)(GL_SCISSOR_TEST, index);
+  }
+}
+
+void GlStateGuard::put_back_blending() const {
+  for (std::size_t i = 0; i < blend_state_.size(); ++i) {
+    const auto& b = blend_state_[i];
+    if (!gl_.BlendFuncSeparatei) {
+      gl_.BlendFuncSeparate(symbol(b[0]), symbol(b[1]), symbol(b[2]), symbol(b[3]));
+      gl_.BlendEquationSeparate(symbol(b[4]), symbol(b[5]));
+      continue;
+    }
+    const auto index = static_cast<GLuint>(i);
+    gl_.BlendFuncSeparatei(index, symbol(b[0]), symbol(b[1]), symbol(b[2]), symbol(b[3]));
+    gl_.BlendEquationSeparatei(index, symbol(b[4]), symbol(b[5]));
+  }
 }
 
 void GlStateGuard::neutral() const {
@@ -161,10 +207,9 @@ void GlStateGuard::put_back_fixed_function() const {
   gl_.FrontFace(symbol(front_face_));
   gl_.Scissor(scissor_[0], scissor_[1], scissor_[2], scissor_[3]);
   gl_.Viewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
-  gl_.BlendFuncSeparate(symbol(blend_state_[0]), symbol(blend_state_[1]), symbol(blend_state_[2]),
-                        symbol(blend_state_[3]));
-  gl_.BlendEquationSeparate(symbol(blend_state_[4]), symbol(blend_state_[5]));
+  put_back_blending();
   gl_.DepthRange(depth_range_[0], depth_range_[1]);
+  put_back_viewports();
   gl_.DepthMask(depth_mask_);
   if (gl_.ClipControl) gl_.ClipControl(symbol(clip_origin_), symbol(clip_depth_));
 }

@@ -49,12 +49,23 @@ class GlStateGuard {
   static constexpr int kDepthTest = 0, kScissor = 1, kSrgb = 4;
   static constexpr int kCapabilities = 23;
   std::array<bool, kCapabilities> enabled_{};
+  struct Viewport {
+    std::array<GLfloat, 4> box{};
+    std::array<GLint, 4> scissor{};
+    std::array<GLdouble, 2> depth_range{};
+    bool scissored = false;
+  };
+  void take_viewports();
+  void put_back_viewports() const;
+  void put_back_blending() const;
+
   std::vector<bool> blend_;  ///< per draw buffer
   std::vector<std::array<GLboolean, 4>> color_mask_;
   std::array<GLint, 2> polygon_mode_{};
   GLint depth_func_ = 0, cull_face_ = 0, front_face_ = 0, clip_origin_ = 0, clip_depth_ = 0;
   std::array<GLint, 4> viewport_{}, scissor_{};
-  std::array<GLint, 6> blend_state_{};
+  std::vector<std::array<GLint, 6>> blend_state_;  ///< per draw buffer, or one for all
+  std::vector<Viewport> viewports_;                ///< where there are several
   std::array<double, 2> depth_range_{};
   GLboolean depth_mask_ = GL_TRUE;
 };
