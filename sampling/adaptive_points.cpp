@@ -86,7 +86,7 @@ class AdaptivePatch {
 
   void emit(const Cell& made) {
     DifferentialPoint point = *made.point;
-    point.enlarged = made.reach.x > point.half_u || made.reach.y > point.half_v;
+    point.own_size = true;
     point.half_u = made.reach.x;
     point.half_v = made.reach.y;
     out_.points.points.push_back(point);

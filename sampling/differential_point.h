@@ -27,8 +27,8 @@ struct DifferentialPoint {
   /// far the osculating circles in the principal directions are from the rectangle at its edges.
   double bound = 0;
   std::uint32_t face = 0;  ///< index in the part
-  /// The rectangle is larger than ε and δ make it (mesh vertices, limits of refinement).
-  bool enlarged = false;
+  /// The rectangle is not the one that ε and δ make (adaptive and certified points, some of a mesh's vertices).
+  bool own_size = false;
 
   Vec3 n() const { return cross(u, v); }
   /// λv / λu, in [-1, 1]; 0 for a plane.

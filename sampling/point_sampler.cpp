@@ -144,7 +144,7 @@ DifferentialPoint point_of(const QuadricDp& dp) {
   point.uv = dp.cell.center();
   point.bound = dp.bound;
   point.face = dp.face;
-  point.enlarged = true;
+  point.own_size = true;
   return point;
 }
 
