@@ -21,7 +21,8 @@ std::string usage_error(const CLI::App& app, int argc, char** argv, const CLI::P
   const auto commands =
       app.get_subcommands([&](const CLI::App* command) { return command->get_name() == first; });
   if (first[0] != '-' && commands.empty())
-    return "'" + first + "' is no command of this version (info, render and compare are); see dupin --help";
+    return "'" + first +
+           "' is no command of this version (info, render, sample and compare are); see dupin --help";
   const bool named = first[0] != '-';
   return std::string(error.what()) + "; see dupin " + (named ? first + " " : "") + "--help";
 }
@@ -36,6 +37,7 @@ int run(int argc, char** argv) {
   dupin::app::Command chosen;
   dupin::app::add_info_command(app, chosen);
   dupin::app::add_render_command(app, chosen);
+  dupin::app::add_sample_command(app, chosen);
   dupin::app::add_compare_command(app, chosen);
   try {
     app.parse(argc, argv);

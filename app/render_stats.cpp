@@ -16,32 +16,9 @@ std::string placed_name(const Instance& instance, const std::string& face) {
   return instance.name.empty() ? face : instance.name + ": " + face;
 }
 
-/// `left_out[i]`: the faces of part i that are not drawn.
-FaceReport report(const Model& model, const std::vector<std::vector<SkippedFace>>& left_out) {
-  FaceReport faces;
-  for (const SkippedFace& face : model.skipped)
-    for (std::uint32_t i = 0; i < face.count; ++i) faces.skipped.push_back({face.name, face.reason, 1});
-  std::size_t instances = face_instance_count(model);
-  for (const Instance& instance : model.instances) {
-    for (const SkippedFace& face : left_out[instance.part]) {
-      faces.skipped.push_back({placed_name(instance, face.name), face.reason, 1});
-      --instances;
-    }
-  }
-  faces.drawn = instances;
-  return faces;
-}
-
 std::string face_name(const Part& part, std::size_t face) {
   if (!part.faces[face].name.empty()) return part.faces[face].name;
   return "face " + std::to_string(face + 1) + (part.name.empty() ? "" : " of " + part.name);
-}
-
-Json to_json(const FaceReport& faces) {
-  Json skipped = Json::array();
-  for (const SkippedFace& face : faces.skipped)
-    skipped.push_back({{"name", face.name}, {"reason", face.reason}});
-  return {{"total", faces.total()}, {"drawn", faces.drawn}, {"skipped", std::move(skipped)}};
 }
 
 Json to_json(const std::optional<CertifiedError>& error) {
@@ -78,10 +55,32 @@ CertifiedError certified_error(const DpScene& scene) {
   return error;
 }
 
+FaceReport report_faces(const Model& model, const std::vector<std::vector<SkippedFace>>& left_out) {
+  FaceReport faces;
+  for (const SkippedFace& face : model.skipped)
+    for (std::uint32_t i = 0; i < face.count; ++i) faces.skipped.push_back({face.name, face.reason, 1});
+  std::size_t instances = face_instance_count(model);
+  for (const Instance& instance : model.instances) {
+    for (const SkippedFace& face : left_out[instance.part]) {
+      faces.skipped.push_back({placed_name(instance, face.name), face.reason, 1});
+      --instances;
+    }
+  }
+  faces.drawn = instances;
+  return faces;
+}
+
+nlohmann::ordered_json to_json(const FaceReport& faces) {
+  Json skipped = Json::array();
+  for (const SkippedFace& face : faces.skipped)
+    skipped.push_back({{"name", face.name}, {"reason", face.reason}});
+  return {{"total", faces.total()}, {"drawn", faces.drawn}, {"skipped", std::move(skipped)}};
+}
+
 FaceReport report_faces(const Model& model, const DpScene& scene) {
   std::vector<std::vector<SkippedFace>> left_out(model.parts.size());
   for (std::size_t i = 0; i < model.parts.size(); ++i) left_out[i] = scene.parts[i].skipped;
-  return report(model, left_out);
+  return report_faces(model, left_out);
 }
 
 FaceReport report_faces_of_triangles(const Model& model) {
@@ -94,7 +93,7 @@ FaceReport report_faces_of_triangles(const Model& model) {
       if (!meshed[face])
         left_out[i].push_back({face_name(part, face), "the kernel's mesher made no triangles of it", 1});
   }
-  return report(model, left_out);
+  return report_faces(model, left_out);
 }
 
 nlohmann::ordered_json to_json(const RenderStats& stats) {

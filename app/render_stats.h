@@ -25,6 +25,9 @@ struct FaceReport {
   std::vector<SkippedFace> skipped;  ///< one entry a face instance
   std::size_t total() const { return drawn + skipped.size(); }
 };
+/// What the reader left out and, of each part, what is listed in `left_out`.
+FaceReport report_faces(const Model& model, const std::vector<std::vector<SkippedFace>>& left_out);
+nlohmann::ordered_json to_json(const FaceReport& faces);
 /// What the reader left out and what has no DPs.
 FaceReport report_faces(const Model& model, const DpScene& scene);
 /// What the reader left out and what the kernel made no triangles of.
