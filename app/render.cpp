@@ -83,7 +83,7 @@ Status RenderJob::prepare() {
 }
 
 unsigned RenderJob::outputs() const {
-  if (!options_.exr()) return kColor;
+  if (!options_.exr()) return kScreen;
   static constexpr std::pair<const char*, Output> kNames[] = {
       {"color", kColor},       {"normal", kNormal},       {"depth", kDepth},
       {"position", kPosition}, {"curvature", kCurvature}, {"direction", kDirection},
@@ -156,9 +156,8 @@ Status RenderJob::draw() {
 
 Status RenderJob::write() {
   Stopwatch watch;
-  const Image image = to_image(frame_);
-  const Status status = options_.exr() ? write_exr(picture_.working_path(), image)
-                                       : write_png(picture_.working_path(), to_image8(image));
+  const Status status = options_.exr() ? write_exr(picture_.working_path(), to_image(frame_))
+                                       : write_png(picture_.working_path(), screen_image(frame_));
   if (!status.ok()) return {status.code, options_.output + ": cannot write"};
   stats_.times.write = watch.lap();
   stats_.times.total = session_.limits().elapsed();

@@ -131,19 +131,25 @@ class Footprints {
   std::vector<std::array<int, 2>>& bands_;
 };
 
-bool turned_away(const DpBounds& dp, const PartCamera& camera) {
+/// Which sides of a DP can be seen.
+enum class Facing { away, towards, unknown };
+
+Facing facing(const DpBounds& dp, const PartCamera& camera) {
   const Vec3 towards = camera.perspective ? camera.eye - dp.center : camera.eye;
-  if (dp.planar) return dot(dp.axis, towards) < 0;
-  if (dp.sin_cone >= 1) return false;
+  if (dp.planar) return dot(dp.axis, towards) < 0 ? Facing::away : Facing::towards;
+  if (dp.sin_cone >= 1) return Facing::unknown;
   const double l = length(towards);
   const double sin_sphere = camera.perspective ? dp.radius / l : 0;
-  if (!(sin_sphere < 1)) return false;
-  // Turned away if the axis and the direction to the viewer are more than 90° + cone + sphere apart.
+  if (!(sin_sphere < 1)) return Facing::unknown;
+  // Turned away if the axis and the direction to the viewer are more than 90° + cone + sphere apart, and
+  // towards the viewer if less than 90° − cone − sphere.
   const double cos_cone = std::sqrt(std::max(0.0, 1 - dp.sin_cone * dp.sin_cone)),
                cos_sphere = std::sqrt(1 - sin_sphere * sin_sphere);
   const double cos_sum = cos_cone * cos_sphere - dp.sin_cone * sin_sphere;
   const double sin_sum = dp.sin_cone * cos_sphere + cos_cone * sin_sphere;
-  return cos_sum > 0 && dot(dp.axis, towards) < -sin_sum * l;
+  const double along = dot(dp.axis, towards);
+  if (cos_sum <= 0 || std::abs(along) <= sin_sum * l) return Facing::unknown;
+  return along < 0 ? Facing::away : Facing::towards;
 }
 
 bool out_of_view(const DpBounds& dp, const PartCamera& camera) {
@@ -175,21 +181,23 @@ void add_dps(const SceneInstance& instance, std::uint32_t index, const ScenePart
   const double depth_scale = length(camera.depth.n);
   for (std::size_t i = 0; i < part.dps.size(); ++i) {
     const DpBounds& dp = part.dps[i];
-    if (out_of_view(dp, camera) || (camera.cull_turned_away && turned_away(dp, camera))) continue;
+    if (out_of_view(dp, camera)) continue;
+    const Facing side = facing(dp, camera);
+    if (camera.cull_turned_away && side == Facing::away) continue;
     const double radius_px = footprints.add(camera, dp.center, dp.radius);
     const double depth = dot(camera.depth.n, dp.center) + camera.depth.d;
     std::uint32_t kind = flats ? dp.kind : dp.kind & ~kFlatKind;
     if (kind & kCurvedKind) {
-      if (camera.cull_turned_away) kind |= kFrontOnlyKind;
+      if (camera.cull_turned_away || side != Facing::unknown) kind |= kOneRootKind;
       if (camera.perspective && depth < kProxyDistance * dp.radius * depth_scale) kind |= kPrismKind;
     }
     const std::uint32_t color =
         instance.face_colors.empty() ? instance.color : instance.face_colors[dp.color_face];
-    candidates.push_back(
-        {sort_key(kind, static_cast<float>(depth)),
-         {dp.record, index, instance.first_primitive + static_cast<std::uint32_t>(i) + 1, color},
-         &dp,
-         radius_px});
+    candidates.push_back({sort_key(kind, static_cast<float>(depth)),
+                          {dp.record, side == Facing::away ? index | kFromBehindItem : index,
+                           instance.first_primitive + static_cast<std::uint32_t>(i) + 1, color},
+                          &dp,
+                          radius_px});
   }
 }
 
@@ -327,7 +335,8 @@ void build_draw_list(const Scene::Impl& scene, const ViewRays& view, bool flats,
     const PartCamera camera = part_camera(instance, part, view, sides);
     if (part.triangles) {
       list.runs.push_back({index, part.first_triangle, part.triangles,
-                           instance.first_primitive + static_cast<std::uint32_t>(part.dps.size())});
+                           instance.first_primitive + static_cast<std::uint32_t>(part.dps.size()),
+                           instance.first_face, instance.color, !instance.face_colors.empty()});
       footprints.add(camera, part.box.center() - part.anchor, part.box.diagonal() / 2);
     }
     if (!part.layer_box.empty())

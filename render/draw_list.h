@@ -18,18 +18,22 @@ using InstanceTexels = std::array<std::array<float, 4>, 10>;
 
 /// One entry of the list: shaders/prepare.vert's input. Its place is its slot.
 struct DrawItem {
-  std::uint32_t record, instance, primitive, color;
+  std::uint32_t record, instance, primitive,
+      color;  ///< instance: with kFromBehindItem if its inner side is seen
 };
+inline constexpr std::uint32_t kFromBehindItem = 0x80000000U;
 
 struct TriangleRun {
   std::uint32_t instance, first_triangle, triangles, first_primitive;
+  std::uint32_t first_face, color;  ///< color: of all of them, unless own_colors
+  bool own_colors;
 };
 
 /// What a DP's proxy and region are made of; each combination has a program of its own, so that the usual
 /// ones are the fastest.
 constexpr std::uint32_t kCurvedKind = 1, kPlanesKind = 2, kLinesKind = 4, kArcsKind = 8, kEllipsesKind = 16;
 constexpr std::uint32_t kPrismKind = 32;  ///< curved: too near to the eye for a proxy in the picture's plane
-constexpr std::uint32_t kFrontOnlyKind = 64;   ///< curved: only its outer side can be seen
+constexpr std::uint32_t kOneRootKind = 64;  ///< curved: only its outer, or only its inner, side can be seen
 constexpr std::uint32_t kFeaturesKind = 1024;  ///< curved: has feature edges
 constexpr std::uint32_t kInsideKind = 2048;    ///< planar: rectangles that need no test
 /// Bounded by no more than so many lines and arcs and nothing else: they go with the proxy. 1 + index in

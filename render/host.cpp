@@ -34,14 +34,22 @@ bool converts_to_srgb(const Gl& gl, const GlStateGuard& state) {
   return encoding == GL_SRGB;
 }
 
+/// The depth buffer is that of the last sample, which is the pixel's centre only if there is one.
+bool own_depth_picture(const DrawOptions& options) {
+  return options.samples > 1;
+}
+
 }  // namespace
 
 Status Renderer::Impl::composite(const HostView& host, const ViewRays& view, const DrawOptions& options,
                                  const GlStateGuard& state) {
-  const auto name = program(
-      "composite",
-      {{"screen.vert"}, {"composite.frag"}, {}, {}, {{"colors", kVerticesUnit}, {"depths", kIndicesUnit}}});
+  const bool depth_picture = own_depth_picture(options);
+  ProgramText text{
+      {"screen.vert"}, {"composite.frag"}, {}, {}, {{"colors", kVerticesUnit}, {"depths", kIndicesUnit}}};
+  if (depth_picture) text.defines.push_back("DEPTH_PICTURE");
+  const auto name = program(depth_picture ? "composite by depth" : "composite", text);
   if (!name) return name.status();
+  set_view(*name, view);
   set_view(*name, view);
   const auto uniform = [&](const char* n) { return gl->GetUniformLocation(*name, n); };
   gl->BindFramebuffer(GL_DRAW_FRAMEBUFFER, state.draw_framebuffer());
@@ -53,13 +61,12 @@ Status Renderer::Impl::composite(const HostView& host, const ViewRays& view, con
                 static_cast<float>(std::max(near, far)));
   gl->Uniform3i(uniform("place"), host.viewport[0], host.viewport[1], host.viewport[3]);
   gl->Uniform1i(uniform("encode"), converts_to_srgb(*gl, state) ? 0 : 1);
-  gl->Uniform1f(uniform("samples"), static_cast<float>(options.samples));
-  const auto bind = [&](int unit, Picture which) {
+  const auto bind = [&](int unit, const GlTexture& texture) {
     gl->ActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + unit));
-    gl->BindTexture(GL_TEXTURE_2D, picture(which).name());
+    gl->BindTexture(GL_TEXTURE_2D, texture.name());
   };
-  bind(kVerticesUnit, kColorPicture);
-  bind(kIndicesUnit, kNormalDepthPicture);
+  bind(kVerticesUnit, picture(kScreenPicture));
+  bind(kIndicesUnit, depth_picture ? picture(kNormalDepthPicture) : depth());
   state.use_host_output();
   gl->Viewport(host.viewport[0], host.viewport[1], host.viewport[2], host.viewport[3]);
   gl->Enablei(GL_BLEND, 0);
@@ -74,7 +81,7 @@ Status Renderer::draw_into_host(Scene& scene, const HostView& host, const DrawOp
   auto view = view_rays(host.view, host.projection, host.viewport[2], host.viewport[3]);
   if (!view) return view.status();
   DrawOptions own = options;
-  own.outputs = kColor | kDepth;
+  own.outputs = own_depth_picture(own) ? kScreen | kDepth : kScreen;
   own.background.reset();
   const Status valid = check(own);
   if (!valid.ok()) return valid;

@@ -38,6 +38,7 @@ void Renderer::Impl::set_view(GLuint name, const ViewRays& view) const {
   gl->Uniform3f(location("depth_terms"), static_cast<float>(terms[0]), static_cast<float>(terms[1]),
                 static_cast<float>(terms[2]));
   gl->Uniform2f(location("axis_scale"), static_cast<float>(1 / view.sx), static_cast<float>(1 / view.sy));
+  gl->Uniform2f(location("ray_scale"), static_cast<float>(view.sx), static_cast<float>(view.sy));
   gl->Uniform2f(location("axis_offset"), static_cast<float>(view.ox), static_cast<float>(view.oy));
   const Vec3 back = -view.forward;
   const float axes[9] = {

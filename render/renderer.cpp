@@ -31,6 +31,12 @@ Vec2 sample_offset(int index, int count) {
   return {u - 0.5, v - 0.5};
 }
 
+/// Colors that need no more of a surface than its normal and numbers.
+bool drawn_at_once(Shading shading) {
+  return shading == Shading::lit || shading == Shading::zebra || shading == Shading::face ||
+         shading == Shading::primitive;
+}
+
 std::string text_of(const Gl& gl, GLenum what) {
   const auto* text = reinterpret_cast<const char*>(gl.GetString(what));
   return text ? text : "";
@@ -117,6 +123,8 @@ Result<std::unique_ptr<Scene>> Renderer::upload(const Model& model, const SceneC
     gl.BindBuffer(GL_ARRAY_BUFFER, scene->vertices.buffer());
     gl.EnableVertexAttribArray(0);
     gl.VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 24, nullptr);
+    gl.EnableVertexAttribArray(1);
+    gl.VertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, 24, reinterpret_cast<const void*>(std::size_t{12}));
     gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, scene->indices.buffer());
   }
   for (std::uint32_t i = 0; i < scene->layers.size() && status.ok(); ++i)
@@ -132,22 +140,26 @@ Status Renderer::Impl::draw_samples(const Scene::Impl& scene, const ViewRays& vi
                                     const DrawOptions& options) {
   const bool floats = options.outputs & kColor, screen = options.outputs & kScreen;
   const float alpha = options.background ? options.background->a : 0;
-  const bool at_once = screen && !floats && options.samples == 1 && (alpha == 0 || alpha == 1);
+  const bool straight = screen && !floats && options.samples == 1 && (alpha == 0 || alpha == 1);
   const unsigned others = pictures_for(options.outputs & ~(kColor | kScreen));
-  const unsigned color = at_once ? 1U << kScreenPicture : floats || screen ? 1U << kColorPicture : 0U;
+  const unsigned color = straight ? 1U << kScreenPicture : floats || screen ? 1U << kColorPicture : 0U;
   // Half floats hold the sum of a few samples as well as 8 bits can show it.
   const GLenum format = floats || options.samples > kMostHalfSamples ? GL_RGBA32F : GL_RGBA16F;
   Status status =
       prepare_targets(view.width, view.height, others | color | (screen ? 1U << kScreenPicture : 0U), format);
   const bool together = options.samples == 1 || !color;
+  const bool at_once = screen && !floats && drawn_at_once(options.shading);
+  if (at_once && status.ok() && !together) prepare_sample(view.width, view.height);
   for (int i = 0; i < options.samples && status.ok() && !together; ++i) {
     const Vec2 offset = sample_offset(i, options.samples);
-    status = run({&scene, jittered(view, offset.x, offset.y), &options, color, options.samples, i == 0});
+    status = run({&scene, jittered(view, offset.x, offset.y), &options, color, options.samples, i == 0,
+                  at_once ? &sample_ : nullptr});
   }
   // The other pictures, and the numbers of what is seen, are the pixel centres'.
   if (status.ok() && (together || others))
-    status = run({&scene, view, &options, together ? others | color : others, 1, true});
-  return status.ok() && screen && !at_once ? resolve(view, options.samples) : status;
+    status = run({&scene, view, &options, together ? others | color : others, 1, true,
+                  at_once && straight && !others ? &pictures_[kScreenPicture] : nullptr});
+  return status.ok() && screen && !straight ? resolve(view, options.samples) : status;
 }
 
 Result<FrameStats> Renderer::draw_only(Scene& scene, const Camera& camera, const DrawOptions& options) {

@@ -50,6 +50,11 @@ enum Picture {
 /// The pictures that the outputs asked for are read from, as bits 1 << Picture.
 unsigned pictures_for(unsigned outputs);
 
+Color premultiplied_background(const DrawOptions& options);
+/// sRGB, 8 bits each, r lowest; and back.
+std::uint32_t srgb_word(const Color& color);
+Color linear_color(std::uint32_t word);
+
 class Renderer::Impl {
  public:
   std::shared_ptr<const Gl> gl;
@@ -66,11 +71,15 @@ class Renderer::Impl {
     unsigned pictures = 0;
     int samples = 1;    ///< > 1: the color picture holds this many passes' sum
     bool first = true;  ///< of them
+    /// Where colors of DPs and triangles are drawn together with their ids: the screen picture, or, with
+    /// several samples, sample_. Null: nowhere.
+    const GlTexture* at_once = nullptr;
     bool color() const { return pictures & (1U << kColorPicture | 1U << kScreenPicture); }
     bool edges() const { return options->edges && color(); }
   };
   /// Makes room for pictures of this size; ids and depth always.
   Status prepare_targets(int width, int height, unsigned pictures, GLenum color_format);
+  void prepare_sample(int width, int height);
   Status run(const Pass& pass);
   Status draw_samples(const Scene::Impl& scene, const ViewRays& view, const DrawOptions& options);
   /// From the color picture, a sum of samples, to the screen picture.
@@ -106,6 +115,11 @@ class Renderer::Impl {
   Status draw_visibility(const Pass& pass);
   Status draw_dps(const Pass& pass);
   Status draw_triangles(const Pass& pass);
+  Status use_triangle_program(const Pass& pass, const TriangleRun& run, GLuint& name);
+  void attach_colors(const GlTexture* colors);
+  Status add_sample(const Pass& pass);
+  /// Sets the uniforms that describe what colors show.
+  void set_looks(GLuint program, const Pass& pass) const;
   /// What of the scene's layers is done in this pass.
   Status each_layer(const Pass& pass, const std::function<Status(Layer&, const LayerPass&)>& what);
   Status shade(const Pass& pass);
@@ -127,7 +141,7 @@ class Renderer::Impl {
   std::uint32_t indexed_dps_ = 0;
   int width_ = 0, height_ = 0;
   float view_spread_ = 1;
-  GlTexture ids_, depth_;
+  GlTexture ids_, depth_, sample_;
   GLenum color_format_ = 0;
   std::array<GlTexture, kPictures> pictures_;
   GlFramebuffer visibility_framebuffer_, shading_framebuffer_;

@@ -26,15 +26,6 @@ double curvature_scale(const Scene::Impl& scene, const DrawOptions& options) {
   return diagonal > 0 ? 10 / diagonal : 1;
 }
 
-std::uint32_t srgb_word(const Color& c) {
-  const auto byte = [](float linear) {
-    const float v = std::clamp(linear, 0.0F, 1.0F);
-    return static_cast<std::uint32_t>(
-        std::lround(255 * (v <= 0.0031308F ? 12.92F * v : 1.055F * std::pow(v, 1 / 2.4F) - 0.055F)));
-  };
-  return byte(c.r) | byte(c.g) << 8 | byte(c.b) << 16 | 0xff000000U;
-}
-
 }  // namespace
 
 struct Variant {
@@ -76,12 +67,29 @@ Variant shading_variant(unsigned pictures, const DrawOptions& options, const Lay
   return v;
 }
 
+}  // namespace
+
 Color premultiplied_background(const DrawOptions& options) {
   const Color c = options.background.value_or(Color{0, 0, 0, 0});
   return {c.r * c.a, c.g * c.a, c.b * c.a, c.a};
 }
 
-}  // namespace
+std::uint32_t srgb_word(const Color& color) {
+  const auto byte = [](float linear) {
+    const float v = std::clamp(linear, 0.0F, 1.0F);
+    return static_cast<std::uint32_t>(
+        std::lround(255 * (v <= 0.0031308F ? 12.92F * v : 1.055F * std::pow(v, 1 / 2.4F) - 0.055F)));
+  };
+  return byte(color.r) | byte(color.g) << 8 | byte(color.b) << 16 | 0xff000000U;
+}
+
+Color linear_color(std::uint32_t word) {
+  const auto linear = [](std::uint32_t byte) {
+    const float s = static_cast<float>(byte & 255) / 255;
+    return s <= 0.04045F ? s / 12.92F : std::pow((s + 0.055F) / 1.055F, 2.4F);
+  };
+  return {linear(word), linear(word >> 8), linear(word >> 16), 1};
+}
 
 Status Renderer::Impl::bind_shading_framebuffer(unsigned pictures) {
   gl->BindFramebuffer(GL_FRAMEBUFFER, shading_framebuffer_.name());
@@ -121,12 +129,13 @@ void Renderer::Impl::clear_pictures(const Pass& pass) {
 }
 
 Status Renderer::Impl::shade(const Pass& pass) {
+  if (pass.at_once && pass.samples == 1 && pass.scene->layers.empty()) return {};
   Status status = bind_shading_framebuffer(pass.pictures);
   if (!status.ok()) return status;
   if (pass.pictures & 1U << kScreenPicture) gl->Enable(GL_FRAMEBUFFER_SRGB);
   gl->ActiveTexture(GL_TEXTURE0 + kIdsUnit);
   gl->BindTexture(GL_TEXTURE_2D, ids_.name());
-  if (pass.first) clear_pictures(pass);
+  if (pass.first && !(pass.at_once && pass.samples == 1)) clear_pictures(pass);
   gl->Enable(GL_DEPTH_TEST);
   gl->DepthFunc(GL_LESS);
   gl->DepthMask(GL_FALSE);
@@ -135,14 +144,29 @@ Status Renderer::Impl::shade(const Pass& pass) {
     gl->BlendEquationSeparate(GL_FUNC_ADD, GL_FUNC_ADD);
     gl->BlendFuncSeparate(GL_ONE, GL_ONE, GL_ONE, GL_ONE);
   }
-  status = shade_dps(pass);
-  if (status.ok()) status = shade_triangles(pass);
+  if (pass.at_once && pass.samples > 1) status = add_sample(pass);
+  if (!pass.at_once) status = shade_dps(pass);
+  if (!pass.at_once && status.ok()) status = shade_triangles(pass);
   if (status.ok())
     status =
         each_layer(pass, [&](Layer& layer, const LayerPass& own) { return shade_layer(pass, layer, own); });
   gl->Disablei(GL_BLEND, 0);
   gl->Disable(GL_FRAMEBUFFER_SRGB);
   return status;
+}
+
+Status Renderer::Impl::add_sample(const Pass& pass) {
+  ProgramText text{{"screen.vert"}, {"add.frag"}, {}, {}, {{"colors", kVerticesUnit}}};
+  const bool layers = !pass.scene->layers.empty();
+  if (layers) text.defines.push_back("LAYERS");
+  const auto name = program(layers ? "add beside layers" : "add", text);
+  if (!name) return name.status();
+  set_view(*name, pass.view);
+  set_looks(*name, pass);
+  gl->ActiveTexture(GL_TEXTURE0 + kVerticesUnit);
+  gl->BindTexture(GL_TEXTURE_2D, sample_.name());
+  cover_bands(*name);
+  return {};
 }
 
 Status Renderer::Impl::resolve(const ViewRays& view, int samples) {
@@ -162,18 +186,22 @@ Status Renderer::Impl::resolve(const ViewRays& view, int samples) {
   return {};
 }
 
-/// Leaves the program in use, with what all of them share set.
-Status Renderer::Impl::use_shading_program(const Pass& pass, const Variant& variant, GLuint& name) {
+void Renderer::Impl::set_looks(GLuint name, const Pass& pass) const {
   const DrawOptions& options = *pass.options;
-  const auto built = program(variant.key, variant.text);
-  if (!built) return built.status();
-  name = *built;
-  set_view(name, pass.view);
   const auto uniform = [&](const char* n) { return gl->GetUniformLocation(name, n); };
   const Color under = pass.samples > 1 ? premultiplied_background(options) : Color{0, 0, 0, 0};
   gl->Uniform4f(uniform("under"), under.r, under.g, under.b, under.a);
   gl->Uniform1f(uniform("curvature_scale"), static_cast<float>(curvature_scale(*pass.scene, options)));
   gl->Uniform1ui(uniform("only_color"), options.color ? srgb_word(*options.color) : 0);
+}
+
+/// Leaves the program in use, with what all of them share set.
+Status Renderer::Impl::use_shading_program(const Pass& pass, const Variant& variant, GLuint& name) {
+  const auto built = program(variant.key, variant.text);
+  if (!built) return built.status();
+  name = *built;
+  set_view(name, pass.view);
+  set_looks(name, pass);
   return {};
 }
 

@@ -43,6 +43,7 @@ Status Renderer::Impl::prepare_targets(int width, int height, unsigned pictures,
                                    " pixels, this OpenGL context's limit"};
   if (width != width_ || height != height_) {
     for (GlTexture& picture : pictures_) picture = {};
+    sample_ = {};
     allocate(*gl, ids_, {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT}, width, height);
     allocate(*gl, depth_, {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT}, width, height);
     gl->BindFramebuffer(GL_FRAMEBUFFER, visibility_framebuffer_.name());
@@ -62,6 +63,10 @@ Status Renderer::Impl::prepare_targets(int width, int height, unsigned pictures,
     if ((pictures & 1U << i) && !picture) allocate(*gl, picture, format, width, height);
   }
   return {};
+}
+
+void Renderer::Impl::prepare_sample(int width, int height) {
+  if (!sample_) allocate(*gl, sample_, kFormats[kScreenPicture], width, height);
 }
 
 void Renderer::Impl::read(Picture picture, GLenum format, GLenum type, void* pixels) {

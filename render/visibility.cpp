@@ -9,15 +9,32 @@ constexpr std::size_t kMostSlots = (1U << 24) - 1;  // the id picture has 24 bit
 constexpr const char* kSlotOutputs[] = {"slot0", "slot1", "slot2", "slot3", "slot4",  "slot5",
                                         "slot6", "slot7", "slot8", "slot9", "slot10", "slot11"};
 
-ProgramText dp_program(std::uint32_t kind, bool edges) {
+/// What a program draws besides the ids: edges; and colors, of that kind of shading (none: -1).
+struct Extras {
+  bool edges = false;
+  int shading = -1;
+  void add_to(ProgramText& text) const {
+    if (edges) text.defines.push_back("EDGES");
+    if (shading < 0) return;
+    text.defines.push_back("AT_ONCE");
+    text.defines.push_back("SHADING " + std::to_string(shading));
+    for (auto* files : {&text.vertex, &text.fragment})
+      files->insert(files->begin(), {"looks.glsl", "at_once.glsl"});
+  }
+  std::string key(std::string_view what) const {
+    return std::string(what) + (edges ? " edges" : "") +
+           (shading < 0 ? "" : " at once " + std::to_string(shading));
+  }
+};
+
+ProgramText dp_program(std::uint32_t kind) {
   ProgramText text;
   const bool curved = kind & kCurvedKind;
-  const std::pair<std::uint32_t, const char*> names[] = {
-      {kPlanesKind, "PLANES"},     {kLinesKind, "LINES"}, {kArcsKind, "ARCS"},
-      {kEllipsesKind, "ELLIPSES"}, {kPrismKind, "PRISM"}, {kFrontOnlyKind, "FRONT_ONLY"}};
+  const std::pair<std::uint32_t, const char*> names[] = {{kPlanesKind, "PLANES"}, {kLinesKind, "LINES"},
+                                                         {kArcsKind, "ARCS"},     {kEllipsesKind, "ELLIPSES"},
+                                                         {kPrismKind, "PRISM"},   {kOneRootKind, "ONE_ROOT"}};
   for (const auto& [bit, define] : names)
     if (kind & bit) text.defines.push_back(define);
-  if (edges) text.defines.push_back("EDGES");
   if (kind & kFlatKind) {
     const FlatPieces& flat = kFlatPieces[((kind & kFlatKind) >> kFlatShift) - 1];
     text.defines.push_back("FLAT_LINES " + std::to_string(flat.lines));
@@ -117,10 +134,14 @@ Status Renderer::Impl::draw_dps(const Pass& pass) {
     const bool edges =
         pass.edges() && (group.curved() ? group.kind & kFeaturesKind : group.kind != kInsideKind);
     const std::uint32_t kind = group.kind & ~kFeaturesKind;
-    const auto name =
-        program((edges ? "dp with edges " : "dp ") + std::to_string(kind), dp_program(kind, edges));
+    const Extras extras{edges, pass.at_once ? static_cast<int>(pass.options->shading) : -1};
+    const std::string key = extras.key("dp " + std::to_string(kind));
+    ProgramText text = dp_program(kind);
+    extras.add_to(text);
+    const auto name = program(key, text);
     if (!name) return name.status();
     set_view(*name, pass.view);
+    set_looks(*name, pass);
     gl->Uniform1f(gl->GetUniformLocation(*name, "edge_half_width"),
                   static_cast<float>(pass.options->edge_width_px / 2));
     gl->Uniform1i(gl->GetUniformLocation(*name, "first"), static_cast<GLint>(group.first));
@@ -136,22 +157,54 @@ Status Renderer::Impl::draw_dps(const Pass& pass) {
 }
 
 Status Renderer::Impl::draw_triangles(const Pass& pass) {
-  if (list_.runs.empty()) return {};
-  const auto name = program("triangle", {{"proxy.glsl", "triangle.vert"}, {"triangle.frag"}, {}, {}, {}});
-  if (!name) return name.status();
-  set_view(*name, pass.view);
-  const GLint instance = gl->GetUniformLocation(*name, "instance"),
-              number = gl->GetUniformLocation(*name, "first_number");
+  GLuint program = 0, first = 0;
   gl->BindVertexArray(pass.scene->mesh_array.name());
-  std::uint32_t first = 0;
   for (const TriangleRun& run : list_.runs) {
-    gl->Uniform1i(instance, static_cast<GLint>(run.instance));
-    gl->Uniform1ui(number, first);
+    const Status status = use_triangle_program(pass, run, program);
+    if (!status.ok()) return status;
+    const auto uniform = [&](const char* n) { return gl->GetUniformLocation(program, n); };
+    gl->Uniform1i(uniform("instance"), static_cast<GLint>(run.instance));
+    gl->Uniform1ui(uniform("first_number"), first);
+    gl->Uniform1i(uniform("first_triangle"), static_cast<GLint>(run.first_triangle));
+    gl->Uniform1i(uniform("first_face"), static_cast<GLint>(run.first_face));
+    gl->Uniform1ui(uniform("first_primitive"), run.first_primitive);
+    const Color color = pass.options->color.value_or(linear_color(run.color));
+    gl->Uniform3f(uniform("run_color"), color.r, color.g, color.b);
     gl->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * run.triangles), GL_UNSIGNED_INT,
                      reinterpret_cast<const void*>(std::size_t{12} * run.first_triangle));
     first += run.triangles;
   }
   return {};
+}
+
+/// Colors by face cost every pixel a search for its own; most parts have one color.
+Status Renderer::Impl::use_triangle_program(const Pass& pass, const TriangleRun& run, GLuint& name) {
+  const bool numbers = pass.options->shading == Shading::face || pass.options->shading == Shading::primitive;
+  const bool own_colors = pass.at_once && ((run.own_colors && !pass.options->color) || numbers);
+  const Extras extras{false, pass.at_once ? static_cast<int>(pass.options->shading) : -1};
+  ProgramText text{{"proxy.glsl", "triangle.vert"}, {"triangle.frag"}, {}, {}, {{"colors", kHeapUnit}}};
+  extras.add_to(text);
+  if (own_colors) text.defines.push_back("OWN_COLORS");
+  const auto built = program(extras.key(own_colors ? "triangles of own colors" : "triangles"), text);
+  if (!built) return built.status();
+  if (*built == name) return {};
+  name = *built;
+  set_view(name, pass.view);
+  set_looks(name, pass);
+  if (own_colors) {
+    pass.scene->triangle_faces.bind(kTriangleFacesUnit);
+    pass.scene->colors.bind(kHeapUnit);
+  }
+  return {};
+}
+
+/// Colors, too, where they are drawn at once; null: not any more.
+void Renderer::Impl::attach_colors(const GlTexture* colors) {
+  gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, GL_TEXTURE_2D, colors ? colors->name() : 0,
+                           0);
+  constexpr GLenum kBuffers[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+  gl->DrawBuffers(colors ? 2 : 1, kBuffers);
+  (colors ? gl->Enable : gl->Disable)(GL_FRAMEBUFFER_SRGB);
 }
 
 void Renderer::Impl::bind_visibility() {
@@ -181,12 +234,19 @@ std::uint32_t Renderer::Impl::drawn_primitives(const Scene::Impl& scene) const {
 
 Status Renderer::Impl::draw_visibility(const Pass& pass) {
   bind_visibility();
+  if (pass.at_once) attach_colors(pass.at_once);
   const GLuint nothing[4] = {0, 0, 0, 0};
   const GLfloat farthest = 0;
   gl->ClearBufferuiv(GL_COLOR, 0, nothing);
   gl->ClearBufferfv(GL_DEPTH, 0, &farthest);
+  if (pass.at_once) {
+    const Color under = premultiplied_background(*pass.options);
+    const GLfloat color[4] = {under.r, under.g, under.b, under.a};
+    gl->ClearBufferfv(GL_COLOR, 1, color);
+  }
   Status status = draw_dps(pass);
   if (status.ok()) status = draw_triangles(pass);
+  if (pass.at_once) attach_colors(nullptr);
   if (!status.ok()) return status;
   return each_layer(pass, [&](Layer& layer, const LayerPass& own) {
     bind_visibility();

@@ -8,13 +8,18 @@ flat in uvec3 id;
 flat in vec2 z0;
 layout(location = 0) out uint out_id;
 
-bool region_contains(inout Region at) {
-  vec3 here = vec3(at.p.xy, 1.0);
-  if (!(at.p.z >= depth.y - at.rounding && at.p.z <= depth.z + at.rounding)) return false;
-  if (!(min(min(dot(side0, here), dot(side1, here)), min(dot(side2, here), dot(side3, here))) >= 0.0)) return false;
-  at.near = false;
-  test_pieces(at, int(id.z), id.y);
-  return at.inside;
+#ifdef AT_ONCE
+flat in vec3 own;
+flat in vec4 cubic;
+layout(location = 1) out vec4 out_color;
+#endif
+
+// Between the prism's ends and the footprint's sides, and not too near the eye.
+bool in_prism(vec3 at, float z) {
+  vec3 here = vec3(at.xy, 1.0);
+  float sides = min(min(dot(side0, here), dot(side1, here)), min(dot(side2, here), dot(side3, here)));
+  float ends = min(at.z - depth.y, depth.z - at.z) + depth.w;
+  return min(min(sides, ends), z - near_depth) >= 0.0;
 }
 
 #ifdef EDGES
@@ -31,20 +36,22 @@ void meet_bounds(inout Region at) {
 }
 #endif
 
-// The point at t on the ray, and how it moves on the surface when the pixel's place moves by one pixel.
-Region region_at(vec3 o, vec3 d, float t, float reach_here) {
-  Region at;
-  at.p = o + t * d;
-  at.rounding = depth.w;
+// A point of the surface at that reach of the ray d, and how it moves there when the pixel's place moves by one pixel.
+Region region_at(vec3 at, vec3 d, float reach_here) {
+  Region r;
+  r.p = at;
+  r.rounding = depth.w;
+  r.near = false;
 #ifdef EDGES
-  vec3 g = quadric_gradient(bend, depth.x, at.p);
+  vec3 g = quadric_gradient(bend, depth.x, at);
   vec3 across = reach_here * pixel.x * p, down = reach_here * pixel.y * q;
   float along = dot(g, d);
-  at.px = across - d * (dot(g, across) / along);
-  at.py = down - d * (dot(g, down) / along);
-  at.nearest = 1e30;
+  r.px = across - d * (dot(g, across) / along);
+  r.py = down - d * (dot(g, down) / along);
+  r.nearest = 1e30;
 #endif
-  return at;
+  test_pieces(r, int(id.z), id.y);
+  return r;
 }
 
 void main() {
@@ -53,30 +60,51 @@ void main() {
   vec3 o = s + z0.y * across, d = f + spread * across;
   Roots roots = quadric_roots(bend, depth.x, o, d);
   if (!(roots.discriminant >= 0.0)) discard;
-#ifdef FRONT_ONLY
-  // Only one of the two is met from outside: there F falls along the ray, or rises if n points inwards.
-  bool on_second = (id.y & kFlipped) != 0u ? roots.slope < 0.0 : roots.slope >= 0.0;
-  float t = on_second ? roots.q / roots.A : roots.C / roots.q, z = z0.x + t;
-  Region region = region_at(o, d, t, z0.y + spread * t);
-  bool hit = z >= near_depth && region_contains(region);
+#ifdef ONE_ROOT
+  // Only one of the two is met from the side that is seen: from where n points to F falls along the ray, and rises from the other.
+  bool on_second = ((id.y & (kFlipped | kFromBehind)) == kFlipped || (id.y & (kFlipped | kFromBehind)) == kFromBehind)
+                       ? roots.slope < 0.0 : roots.slope >= 0.0;
+  float t = on_second ? roots.q / roots.A : roots.C / roots.q;
+  vec3 x = o + t * d;
+  if (!in_prism(x, z0.x + t)) discard;
+  Region region = region_at(x, d, z0.y + spread * t);
 #else
-  float first = roots.C / roots.q, second = roots.q / roots.A, t = 0.0, z = 0.0;
-  bool second_nearer = second < first, hit = false, on_second = second_nearer;
-  Region region;
-  for (int i = 0; i < 2; ++i) {
-    on_second = second_nearer != (i == 1);
-    t = on_second ? second : first;
-    z = z0.x + t;
-    region = region_at(o, d, t, z0.y + spread * t);
-    hit = z >= near_depth && region_contains(region);
-    if (hit) break;
+  float first = roots.C / roots.q, second = roots.q / roots.A;
+  bool on_second = second < first;
+  float t = on_second ? second : first, other = on_second ? first : second;
+  vec3 x = o + t * d, y = o + other * d;
+  bool hit = in_prism(x, z0.x + t), other_hit = in_prism(y, z0.x + other);
+  if (!(hit || other_hit)) discard;
+  if (!hit) {
+    t = other;
+    x = y;
+    on_second = !on_second;
+  }
+  Region region = region_at(x, d, z0.y + spread * t);
+#ifdef PIECES
+  // Seldom: the nearer one is in the prism, but not in the region. A loop, since there are drivers that work through both sides of
+  // every branch.
+  for (bool again = hit && other_hit && !region.inside; again; again = false) {
+    t = other;
+    x = y;
+    on_second = !on_second;
+    region = region_at(x, d, z0.y + spread * t);
   }
 #endif
-  if (!hit) discard;
+#endif
+  if (!region.inside) discard;
   out_id = on_second ? id.x | kSecondRoot : id.x;
+  float edge = 0.0;
 #ifdef EDGES
   meet_bounds(region);
-  out_id |= edge_bits(sqrt(region.nearest));
+  edge = edge_cover(sqrt(region.nearest));
+  out_id |= edge_bits(edge);
 #endif
+#ifdef AT_ONCE
+  vec3 gradient = quadric_gradient(bend, depth.x, x);
+  gradient.xy -= cubic_gradient(cubic, x.xy);
+  out_color = color_at_once(normalize(to_view(gradient, p, q, f)), own, at, edge);
+#endif
+  float z = z0.x + t;
   gl_FragDepth = depth_terms.x + depth_terms.y * z + depth_terms.z / z;
 }

@@ -9,6 +9,10 @@ flat out vec2 z0;           // the depth where rays start, and their reach there
 #ifdef EDGES
 flat out float ink;
 #endif
+#ifdef AT_ONCE
+flat out vec3 own;
+flat out vec4 cubic;
+#endif
 #ifdef FLAT_ARCS
 flat out vec2 reference;
 flat out uvec2 flat_counts;
@@ -110,6 +114,11 @@ void main() {
   depth = vec4(t5.xyz, t3.w);
   z0 = vec2(t11.w, reach(t11.w));
   id = uvec3(uint(slot) + 1u, t0.w, t1.w);
+#ifdef AT_ONCE
+  own = own_color(floatBitsToUint(slot_texel(slot, 2).w), floatBitsToUint(t5.w), floatBitsToUint(t11.x));
+  int terms = int(floatBitsToUint(t11.z));
+  cubic = terms > 0 ? heap_texel(terms) : vec4(0.0);
+#endif
 #ifdef FLAT_ARCS
   fetch_pieces(int(t1.w), t0.w);
 #endif

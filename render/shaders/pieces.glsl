@@ -155,8 +155,9 @@ void test_pieces(inout Region at, int texel, uint meta) { at.inside = true; }
 uniform float edge_half_width;
 flat in float ink;  // less than 1 on what is so small that its edges would blacken it
 
-// How much of the pixel an edge covers, in the bits of the id picture that are for it.
-uint edge_bits(float distance_px) {
-  return uint(ink * clamp(edge_half_width + 0.5 - distance_px, 0.0, 1.0) * kEdgeLevels + 0.5) << kEdgeShift;
+// How much of the pixel an edge covers, as exactly as the bits of the id picture hold it; and those.
+float edge_cover(float distance_px) {
+  return floor(ink * clamp(edge_half_width + 0.5 - distance_px, 0.0, 1.0) * kEdgeLevels + 0.5) / kEdgeLevels;
 }
+uint edge_bits(float cover) { return uint(cover * kEdgeLevels + 0.5) << kEdgeShift; }
 #endif

@@ -10,6 +10,10 @@ flat in float rounding;
 flat in vec4 no_edge;
 #endif
 layout(location = 0) out uint out_id;
+#ifdef AT_ONCE
+flat in vec3 normal, own;
+layout(location = 1) out vec4 out_color;
+#endif
 
 void main() {
   vec3 at = vec3(gl_FragCoord.xy * pixel - 1.0, 1.0);
@@ -38,7 +42,12 @@ void main() {
   nearest = min(nearest, sqrt(region.nearest));
 #endif
 #endif
+  float edge = 0.0;
 #ifdef EDGES
-  out_id |= edge_bits(nearest);
+  edge = edge_cover(nearest);
+  out_id |= edge_bits(edge);
+#endif
+#ifdef AT_ONCE
+  out_color = color_at_once(normal, own, at.xy, edge);
 #endif
 }

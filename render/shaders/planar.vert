@@ -29,6 +29,10 @@ flat out vec4 arcs[2 * FLAT_ARCS];
 #endif
 #endif
 
+#ifdef AT_ONCE
+flat out vec3 normal, own;
+#endif
+
 // In pixels; a corner that is there twice has no side.
 vec3 side_function(vec2 a, vec2 b, mat3 rows, float rounding) {
   vec2 d = b - a;
@@ -72,6 +76,9 @@ void main() {
   side2 = side_function(c23.xy, c23.zw, rows, widen);
   side3 = side_function(c23.zw, c01.xy, rows, widen);
   id = uint(slot) + 1u;
+#ifdef AT_ONCE
+  planar_look(slot, normal, own);
+#endif
 #ifdef PIECES
   row_x = rows[0];
   row_y = rows[1];

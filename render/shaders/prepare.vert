@@ -1,9 +1,11 @@
 // Transform feedback: one vertex a visible DP, from its record, its placement and the camera to its slot.
-layout(location = 0) in uvec4 item;  // record, instance, primitive, color
+layout(location = 0) in uvec4 item;  // record, instance with kFromBehindItem, primitive, color
 
 flat out uvec4 slot0, slot1, slot2, slot3, slot4, slot5, slot6, slot7, slot8, slot9, slot10, slot11;
 
-vec3 instance_texel(int i) { return texelFetch(instances, int(item.y) * kInstanceTexels + i).xyz; }
+const uint kFromBehindItem = 0x80000000u;
+int instance() { return int(item.y & ~kFromBehindItem) * kInstanceTexels; }
+vec3 instance_texel(int i) { return texelFetch(instances, instance() + i).xyz; }
 
 // The rotation of a unit quaternion of which the three smallest parts are stored.
 mat3 frame(vec3 parts, uint largest) {
@@ -21,12 +23,12 @@ uvec4 words(vec3 v, uint w) { return uvec4(floatBitsToUint(v), w); }
 void main() {
   int at = int(item.x);
   uvec4 first = texelFetch(heap, at), second = texelFetch(heap, at + 1);
-  uint meta = first.w;
+  uint meta = first.w | ((item.y & kFromBehindItem) != 0u ? kFromBehind : 0u);
   vec3 origin = uintBitsToFloat(first.xyz);
   mat3 m = frame(uintBitsToFloat(second.xyz), (meta >> 6) & 3u);
 
   // S = hi + lo: hi − origin is exact where it matters, with the camera near the DP.
-  vec4 hi = texelFetch(instances, int(item.y) * kInstanceTexels), lo = texelFetch(instances, int(item.y) * kInstanceTexels + 1);
+  vec4 hi = texelFetch(instances, instance()), lo = texelFetch(instances, instance() + 1);
   vec3 r = (hi.xyz - origin) + lo.xyz;
   vec3 s = r * m;  // mᵀ r
   vec4 c01 = heap_texel(at + 2), c23;

@@ -76,3 +76,13 @@ vec4 rectangle_corner(vec4 ends, int i, float grow, vec4 rx, vec4 ry, vec4 rf) {
 
 // Depth, times this, is farther by rounding.
 const float kBehind = 1.0 - 4e-6;
+
+#ifdef AT_ONCE
+// A planar DP's normal in view space and its color.
+void planar_look(int slot, out vec3 normal, out vec3 own) {
+  vec3 f = slot_texel(slot, 1).xyz, q = slot_texel(slot, 3).xyz;
+  vec4 p = slot_texel(slot, 2);
+  normal = normalize(to_view(vec3(0.0, 0.0, 1.0), p.xyz, q, f));
+  own = own_color(floatBitsToUint(p.w), floatBitsToUint(slot_texel(slot, 5).w), floatBitsToUint(slot_texel(slot, 11).x));
+}
+#endif

@@ -23,3 +23,9 @@ Roots quadric_roots(vec4 bend, float c, vec3 o, vec3 d) {
   r.q = -0.5 * (r.slope + (r.slope < 0.0 ? -root : root));
   return r;
 }
+
+// The gradient of the normal's own third-order terms, to be taken from the quadric's.
+vec2 cubic_gradient(vec4 k, vec2 p) {
+  return vec2(3.0 * k.x * p.x * p.x + 2.0 * k.y * p.x * p.y + k.z * p.y * p.y,
+              k.y * p.x * p.x + 2.0 * k.z * p.x * p.y + 3.0 * k.w * p.y * p.y);
+}

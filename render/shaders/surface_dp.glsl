@@ -41,10 +41,7 @@ Surface surface_at(uint number, vec2 at) {
   vec3 normal_form = g;
   uint cubic = t11.z;
   if (cubic != 0u) {
-    // The normal's own third-order terms: ∇F − ∇C.
-    vec4 k = heap_texel(int(cubic));
-    normal_form.xy -= vec2(3.0 * k.x * x.x * x.x + 2.0 * k.y * x.x * x.y + k.z * x.y * x.y,
-                           k.y * x.x * x.x + 2.0 * k.z * x.x * x.y + 3.0 * k.w * x.y * x.y);
+    normal_form.xy -= cubic_gradient(heap_texel(int(cubic)), x.xy);
   }
   vec3 gradient = vec3(dot(normal_form, right), dot(normal_form, up), dot(normal_form, back));
   float size = length(gradient), outside = (meta & kFlipped) != 0u ? -1.0 : 1.0;

@@ -138,7 +138,8 @@ TEST(Drawing, ScreenColorsAreTheEncodedLinearOnes) {
         if (!opaque && screen.values[alpha] < 32) continue;  // colors of what can hardly be seen are coarse
         largest = std::max(largest, std::abs(screen.values[i] - encoded.values[i]));
       }
-      EXPECT_LE(largest, 1) << samples << " samples";
+      // Several samples are rounded to 8 bits each, by conversions that drivers may approximate.
+      EXPECT_LE(largest, samples == 1 ? 1 : 2) << samples << " samples";
     }
 }
 

@@ -22,7 +22,10 @@ struct Named {
   GLenum value;
   int count = 1;
 };
-#define NAMED(value, ...) Named{#value, value, ##__VA_ARGS__}
+#define NAMED(value, ...)        \
+  Named {                        \
+#value, value, ##__VA_ARGS__ \
+  }
 
 constexpr Named kCapabilities[] = {NAMED(GL_DEPTH_TEST),
                                    NAMED(GL_SCISSOR_TEST),
@@ -48,7 +51,8 @@ constexpr Named kCapabilities[] = {NAMED(GL_DEPTH_TEST),
                                    NAMED(GL_CLIP_DISTANCE0),
                                    NAMED(GL_CLIP_DISTANCE1),
                                    NAMED(GL_CLIP_DISTANCE5)};
-// Off, so that the host's framebuffer can be drawn into at all; and what 3.3 does not have is set where it is there.
+// Off, so that the host's framebuffer can be drawn into at all; and what 3.3 does not have is set where it is
+// there.
 constexpr Named kLaterCapabilities[] = {NAMED(GL_PRIMITIVE_RESTART_FIXED_INDEX), NAMED(GL_SAMPLE_SHADING)};
 
 constexpr Named kNumbers[] = {NAMED(GL_CURRENT_PROGRAM),
@@ -122,14 +126,14 @@ constexpr Named kNumbers[] = {NAMED(GL_CURRENT_PROGRAM),
 constexpr Named kLaterNumbers[] = {NAMED(GL_CLIP_ORIGIN), NAMED(GL_CLIP_DEPTH_MODE),
                                    NAMED(GL_PROGRAM_PIPELINE_BINDING), NAMED(GL_TRANSFORM_FEEDBACK_BINDING)};
 
-constexpr Named kPerDrawBuffer[] = {NAMED(GL_BLEND_SRC_RGB),   NAMED(GL_BLEND_DST_RGB),
-                                    NAMED(GL_BLEND_SRC_ALPHA), NAMED(GL_BLEND_DST_ALPHA),
+constexpr Named kPerDrawBuffer[] = {NAMED(GL_BLEND_SRC_RGB),      NAMED(GL_BLEND_DST_RGB),
+                                    NAMED(GL_BLEND_SRC_ALPHA),    NAMED(GL_BLEND_DST_ALPHA),
                                     NAMED(GL_BLEND_EQUATION_RGB), NAMED(GL_BLEND_EQUATION_ALPHA)};
-constexpr Named kPerUnit[] = {
-    NAMED(GL_TEXTURE_BINDING_1D),          NAMED(GL_TEXTURE_BINDING_2D),     NAMED(GL_TEXTURE_BINDING_3D),
-    NAMED(GL_TEXTURE_BINDING_1D_ARRAY),    NAMED(GL_TEXTURE_BINDING_2D_ARRAY), NAMED(GL_TEXTURE_BINDING_BUFFER),
-    NAMED(GL_TEXTURE_BINDING_CUBE_MAP),    NAMED(GL_TEXTURE_BINDING_RECTANGLE), NAMED(GL_SAMPLER_BINDING),
-    NAMED(GL_TEXTURE_BINDING_2D_MULTISAMPLE)};
+constexpr Named kPerUnit[] = {NAMED(GL_TEXTURE_BINDING_1D),       NAMED(GL_TEXTURE_BINDING_2D),
+                              NAMED(GL_TEXTURE_BINDING_3D),       NAMED(GL_TEXTURE_BINDING_1D_ARRAY),
+                              NAMED(GL_TEXTURE_BINDING_2D_ARRAY), NAMED(GL_TEXTURE_BINDING_BUFFER),
+                              NAMED(GL_TEXTURE_BINDING_CUBE_MAP), NAMED(GL_TEXTURE_BINDING_RECTANGLE),
+                              NAMED(GL_SAMPLER_BINDING),          NAMED(GL_TEXTURE_BINDING_2D_MULTISAMPLE)};
 constexpr Named kIndexedBuffers[] = {
     NAMED(GL_TRANSFORM_FEEDBACK_BUFFER_BINDING), NAMED(GL_TRANSFORM_FEEDBACK_BUFFER_START),
     NAMED(GL_TRANSFORM_FEEDBACK_BUFFER_SIZE), NAMED(GL_UNIFORM_BUFFER_BINDING)};
@@ -257,8 +261,9 @@ void bind_textures(const Context& context) {
   GL_FUNCTION(BINDTEXTURE, BindTexture);
   GL_FUNCTION(BINDSAMPLER, BindSampler);
   GL_FUNCTION(ACTIVETEXTURE, ActiveTexture);
-  constexpr GLenum kTargets[] = {GL_TEXTURE_1D,       GL_TEXTURE_2D,     GL_TEXTURE_3D,       GL_TEXTURE_1D_ARRAY,
-                                 GL_TEXTURE_2D_ARRAY, GL_TEXTURE_BUFFER, GL_TEXTURE_CUBE_MAP, GL_TEXTURE_RECTANGLE};
+  constexpr GLenum kTargets[] = {GL_TEXTURE_1D,       GL_TEXTURE_2D,       GL_TEXTURE_3D,
+                                 GL_TEXTURE_1D_ARRAY, GL_TEXTURE_2D_ARRAY, GL_TEXTURE_BUFFER,
+                                 GL_TEXTURE_CUBE_MAP, GL_TEXTURE_RECTANGLE};
   for (GLuint i = 0; i < kUnits; ++i) {
     ActiveTexture(GL_TEXTURE0 + i);
     for (const GLenum target : kTargets) {
@@ -284,9 +289,10 @@ void bind_buffers(const Context& context) {
   GLuint array = 0;
   GenVertexArrays(1, &array);
   BindVertexArray(array);
-  constexpr GLenum kTargets[] = {GL_ARRAY_BUFFER,      GL_ELEMENT_ARRAY_BUFFER,      GL_COPY_READ_BUFFER,
-                                 GL_COPY_WRITE_BUFFER, GL_UNIFORM_BUFFER,            GL_TEXTURE_BUFFER,
-                                 GL_PIXEL_PACK_BUFFER, GL_TRANSFORM_FEEDBACK_BUFFER, GL_PIXEL_UNPACK_BUFFER};
+  constexpr GLenum kTargets[] = {
+      GL_ARRAY_BUFFER,       GL_ELEMENT_ARRAY_BUFFER, GL_COPY_READ_BUFFER,  GL_COPY_WRITE_BUFFER,
+      GL_UNIFORM_BUFFER,     GL_TEXTURE_BUFFER,       GL_PIXEL_PACK_BUFFER, GL_TRANSFORM_FEEDBACK_BUFFER,
+      GL_PIXEL_UNPACK_BUFFER};
   const auto make = [&](GLenum target) {
     GLuint buffer = 0;
     GenBuffers(1, &buffer);
@@ -348,7 +354,8 @@ void set_numbers(const Context& context) {
   function<PFNGLSTENCILFUNCSEPARATEPROC>(context, "glStencilFuncSeparate")(GL_BACK, GL_GREATER, 4, 0xa5);
   function<PFNGLSTENCILOPPROC>(context, "glStencilOp")(GL_INCR, GL_DECR, GL_INVERT);
   function<PFNGLSTENCILMASKPROC>(context, "glStencilMask")(0x33);
-  function<PFNGLBLENDFUNCSEPARATEPROC>(context, "glBlendFuncSeparate")(GL_DST_COLOR, GL_SRC_ALPHA, GL_ONE, GL_CONSTANT_COLOR);
+  function<PFNGLBLENDFUNCSEPARATEPROC>(context, "glBlendFuncSeparate")(GL_DST_COLOR, GL_SRC_ALPHA, GL_ONE,
+                                                                       GL_CONSTANT_COLOR);
   function<PFNGLBLENDEQUATIONSEPARATEPROC>(context, "glBlendEquationSeparate")(GL_MAX, GL_FUNC_SUBTRACT);
   function<PFNGLBLENDCOLORPROC>(context, "glBlendColor")(0.5F, 0.4F, 0.3F, 0.2F);
   function<PFNGLLOGICOPPROC>(context, "glLogicOp")(GL_XOR);

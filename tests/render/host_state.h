@@ -1,4 +1,5 @@
-// A host's OpenGL state, as far as it can be asked for, and a host that has set all of it to something unusual.
+// A host's OpenGL state, as far as it can be asked for, and a host that has set all of it to something
+// unusual.
 #ifndef DUPIN_TESTS_RENDER_HOST_STATE_H
 #define DUPIN_TESTS_RENDER_HOST_STATE_H
 

@@ -1,7 +1,8 @@
-// A host's OpenGL state is the same after every call as before it, however unusual; and no call depends on it.
+// A host's OpenGL state is the same after every call as before it, however unusual; and no call depends on
+// it.
+#include "host_state.h"
 #include "../../render/view.h"
 #include "device.h"
-#include "host_state.h"
 
 namespace dupin::testing {
 namespace {
