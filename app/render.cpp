@@ -105,6 +105,7 @@ DrawOptions RenderJob::draw_options() const {
   if (options_.background != "none") draw.background = options_.background_color();
   draw.color = options_.uniform_color();
   draw.samples = options_.sample_count();
+  draw.exact_model = &model_;
   return draw;
 }
 

@@ -12,7 +12,7 @@
 namespace dupin {
 
 /// Texture units 0 … kUnits − 1 are the only ones that are used; the last is for making textures.
-inline constexpr int kUnits = 13, kScratchUnit = 12;
+inline constexpr int kUnits = 14, kScratchUnit = 13;
 
 /// A name made by one glGen… function and freed by its glDelete….
 template <auto Generate, auto Delete>

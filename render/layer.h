@@ -46,7 +46,7 @@ struct LayerShading {
   std::string key;                   ///< tells this program from others
   std::vector<std::string> surface;  ///< files of shaders/, or texts
   std::vector<std::string> defines;
-  /// Samplers and their units: any but kIdsUnit, kInstancesUnit and kScratchUnit.
+  /// Samplers and their units: any but kIdsUnit, kInstancesUnit, kCurvaturesUnit and kScratchUnit.
   std::vector<std::pair<const char*, int>> units;
 };
 

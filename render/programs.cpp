@@ -10,9 +10,16 @@ Result<GLuint> Renderer::Impl::program(const std::string& key, const ProgramText
     return found->second.name();
   }
   ProgramText full = text;
-  full.units = {{"heap", kHeapUnit}, {"instances", kInstancesUnit},   {"slots", kSlotsUnit},
-                {"ids", kIdsUnit},   {"vertices", kVerticesUnit},     {"indices", kIndicesUnit},
-                {"runs", kRunsUnit}, {"rectangles", kRectanglesUnit}, {"triangle_faces", kTriangleFacesUnit}};
+  full.units = {{"heap", kHeapUnit},
+                {"instances", kInstancesUnit},
+                {"slots", kSlotsUnit},
+                {"ids", kIdsUnit},
+                {"curvatures", kCurvaturesUnit},
+                {"vertices", kVerticesUnit},
+                {"indices", kIndicesUnit},
+                {"runs", kRunsUnit},
+                {"rectangles", kRectanglesUnit},
+                {"triangle_faces", kTriangleFacesUnit}};
   for (const auto& unit : text.units) full.units.push_back(unit);
   auto built = build_program(*gl, full);
   if (!built) return built.status();

@@ -1,5 +1,8 @@
 // From the pictures of a frame to its numbers in memory.
+#include <limits>
+
 #include "../core/parallel.h"
+#include "exact_pixels.h"
 #include "renderer_impl.h"
 
 namespace dupin {
@@ -43,7 +46,17 @@ std::vector<float> positions(const ViewRays& view, const std::vector<float>& dep
 
 }  // namespace
 
-void Renderer::Impl::read_frame(const ViewRays& view, const DrawOptions& options, Frame& frame) {
+void Renderer::Impl::read_numbers(std::vector<float>& depth, std::vector<std::uint32_t>& numbers) {
+  const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  std::vector<float> texels(pixels * 4);
+  read(kNormalDepthPicture, GL_RGBA, GL_FLOAT, texels.data());
+  depth = channels(texels, 4, 3, 1);
+  numbers.resize(pixels * 2);
+  read(kNumbersPicture, GL_RG_INTEGER, GL_UNSIGNED_INT, numbers.data());
+}
+
+void Renderer::Impl::read_frame(const Scene::Impl& scene, const ViewRays& view, const DrawOptions& options,
+                                Frame& frame) {
   frame.width = width_;
   frame.height = height_;
   (view.perspective ? frame.pixel_per_depth : frame.pixel_constant) = pixel_size(view, 1);
@@ -82,6 +95,15 @@ void Renderer::Impl::read_frame(const ViewRays& view, const DrawOptions& options
     read(kNumbersPicture, GL_RG_INTEGER, GL_UNSIGNED_INT, numbers.data());
     if (wanted & kFace) frame.face = channels(numbers, 2, 0, 1);
     if (wanted & kPrimitive) frame.primitive = channels(numbers, 2, 1, 1);
+  }
+  if (options.exact_model && (wanted & (kUv | kCurvature | kDirection))) {
+    if (wanted & kUv) frame.uv.assign(pixels * 2, std::numeric_limits<float>::quiet_NaN());
+    std::vector<float> depth;
+    std::vector<std::uint32_t> numbers;
+    read_numbers(depth, numbers);
+    find_exact(*options.exact_model, scene, {view, depth, numbers},
+               {wanted & kUv ? &frame.uv : nullptr, wanted & kCurvature ? &frame.curvature : nullptr,
+                wanted & kDirection ? &frame.direction : nullptr});
   }
   std::vector<std::uint32_t> ids(pixels);
   read_ids(ids.data());

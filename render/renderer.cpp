@@ -37,6 +37,13 @@ bool drawn_at_once(Shading shading) {
          shading == Shading::primitive;
 }
 
+Status check(const DrawOptions& options, const Scene::Impl& scene) {
+  if (options.exact_model && (options.exact_model->parts.size() != scene.parts.size() ||
+                              options.exact_model->instances.size() != scene.instances.size()))
+    return {StatusCode::invalid_argument, "the model is not the one that the scene was made from"};
+  return check(options);
+}
+
 std::string text_of(const Gl& gl, GLenum what) {
   const auto* text = reinterpret_cast<const char*>(gl.GetString(what));
   return text ? text : "";
@@ -47,6 +54,8 @@ std::string text_of(const Gl& gl, GLenum what) {
 Status check(const DrawOptions& options) {
   if (options.samples < 1 || options.samples > 256)
     return {StatusCode::invalid_argument, "a pixel can have 1 to 256 samples"};
+  if ((options.outputs & kUv) && !options.exact_model)
+    return {StatusCode::invalid_argument, "parameters need the model"};
   return {};
 }
 
@@ -145,8 +154,10 @@ Status Renderer::Impl::draw_samples(const Scene::Impl& scene, const ViewRays& vi
   const unsigned color = straight ? 1U << kScreenPicture : floats || screen ? 1U << kColorPicture : 0U;
   // Half floats hold the sum of a few samples as well as 8 bits can show it.
   const GLenum format = floats || options.samples > kMostHalfSamples ? GL_RGBA32F : GL_RGBA16F;
-  Status status =
-      prepare_targets(view.width, view.height, others | color | (screen ? 1U << kScreenPicture : 0U), format);
+  const unsigned exact =
+      color && wants_exact_colors(options) ? 1U << kNormalDepthPicture | 1U << kNumbersPicture : 0U;
+  Status status = prepare_targets(view.width, view.height,
+                                  others | color | exact | (screen ? 1U << kScreenPicture : 0U), format);
   const bool together = options.samples == 1 || !color;
   const bool at_once = screen && !floats && drawn_at_once(options.shading);
   if (at_once && status.ok() && !together) prepare_sample(view.width, view.height);
@@ -163,7 +174,7 @@ Status Renderer::Impl::draw_samples(const Scene::Impl& scene, const ViewRays& vi
 }
 
 Result<FrameStats> Renderer::draw_only(Scene& scene, const Camera& camera, const DrawOptions& options) {
-  const Status valid = check(options);
+  const Status valid = check(options, scene.impl());
   if (!valid.ok()) return valid;
   const GlStateGuard guard(*impl_->gl);
   const auto start = Clock::now();
@@ -177,7 +188,7 @@ Result<FrameStats> Renderer::draw_only(Scene& scene, const Camera& camera, const
 }
 
 Result<Frame> Renderer::draw(Scene& scene, const Camera& camera, const DrawOptions& options) {
-  const Status valid = check(options);
+  const Status valid = check(options, scene.impl());
   if (!valid.ok()) return valid;
   const GlStateGuard guard(*impl_->gl);
   const auto start = Clock::now();
@@ -188,7 +199,7 @@ Result<Frame> Renderer::draw(Scene& scene, const Camera& camera, const DrawOptio
   Frame frame;
   frame.stats.milliseconds = milliseconds_since(start);
   frame.stats.primitives = impl_->drawn_primitives(scene.impl());
-  impl_->read_frame(view, options, frame);
+  impl_->read_frame(scene.impl(), view, options, frame);
   return frame;
 }
 

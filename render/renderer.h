@@ -51,7 +51,7 @@ enum Output : unsigned {
   kDirection = 32,   ///< of k1, unit, model space
   kFace = 64,        ///< 1-based, over the drawn face instances in the model's order; 0: background
   kPrimitive = 128,  ///< 1-based
-  kUv = 256,         ///< the surface's parameters
+  kUv = 256,         ///< the surface's parameters; NaN where nothing that has any is drawn. Needs exact_model
   kScreen = 512,     ///< the colors in 8 bits, for a PNG: sRGB, straight alpha; costs least
 };
 
@@ -64,6 +64,11 @@ struct DrawOptions {
   std::optional<Color> color;                           ///< instead of the file's colours
   int samples = 1;  ///< a pixel, for its colour; 1 … 256. The other outputs are those of the pixel's centre.
   double curvature_scale = 0;  ///< |curvature| that gets the full colour; 0: chosen from the scene's size
+  /// The model that the scene was made from, for draw() and draw_only(). With it curvatures, as outputs and
+  /// as colours, are the exact surface's at its point nearest to the drawn one. That is worked out on the
+  /// CPU, in microseconds a pixel. Without it they are those of the quadric drawn, which are exact on planes,
+  /// cylinders, cones and spheres and at the middle of other DPs, and 0 on triangles.
+  const Model* exact_model = nullptr;
 };
 
 /// What one frame took.

@@ -33,7 +33,8 @@ enum Unit {
   kIndicesUnit,
   kTriangleFacesUnit,
   kRunsUnit,
-  kLayerUnit,                      ///< the first of four for layers
+  kLayerUnit,  ///< the first of four for layers
+  kCurvaturesUnit = kLayerUnit + 4,
   kRectanglesUnit = kVerticesUnit  // not in one program
 };
 
@@ -49,6 +50,9 @@ enum Picture {
 };
 /// The pictures that the outputs asked for are read from, as bits 1 << Picture.
 unsigned pictures_for(unsigned outputs);
+
+/// Colors of curvatures of the exact surface.
+bool wants_exact_colors(const DrawOptions& options);
 
 Color premultiplied_background(const DrawOptions& options);
 /// sRGB, 8 bits each, r lowest; and back.
@@ -76,6 +80,7 @@ class Renderer::Impl {
     const GlTexture* at_once = nullptr;
     bool color() const { return pictures & (1U << kColorPicture | 1U << kScreenPicture); }
     bool edges() const { return options->edges && color(); }
+    bool exact_colors() const { return color() && wants_exact_colors(*options); }
   };
   /// Makes room for pictures of this size; ids and depth always.
   Status prepare_targets(int width, int height, unsigned pictures, GLenum color_format);
@@ -88,7 +93,7 @@ class Renderer::Impl {
   Status composite(const HostView& host, const ViewRays& view, const DrawOptions& options,
                    const GlStateGuard& state);
   /// What the last draw_samples drew.
-  void read_frame(const ViewRays& view, const DrawOptions& options, Frame& frame);
+  void read_frame(const Scene::Impl& scene, const ViewRays& view, const DrawOptions& options, Frame& frame);
 
   const GlTexture& picture(Picture picture) const { return pictures_[picture]; }
   GLuint shading_framebuffer() const { return shading_framebuffer_.name(); }
@@ -118,6 +123,8 @@ class Renderer::Impl {
   Status use_triangle_program(const Pass& pass, const TriangleRun& run, GLuint& name);
   void attach_colors(const GlTexture* colors);
   Status add_sample(const Pass& pass);
+  Status find_exact_curvatures(const Pass& pass);
+  void read_numbers(std::vector<float>& depth, std::vector<std::uint32_t>& numbers);
   /// Sets the uniforms that describe what colors show.
   void set_looks(GLuint program, const Pass& pass) const;
   /// What of the scene's layers is done in this pass.
@@ -141,7 +148,7 @@ class Renderer::Impl {
   std::uint32_t indexed_dps_ = 0;
   int width_ = 0, height_ = 0;
   float view_spread_ = 1;
-  GlTexture ids_, depth_, sample_;
+  GlTexture ids_, depth_, sample_, curvatures_;
   GLenum color_format_ = 0;
   std::array<GlTexture, kPictures> pictures_;
   GlFramebuffer visibility_framebuffer_, shading_framebuffer_;

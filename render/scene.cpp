@@ -261,6 +261,8 @@ DpBounds dp_bounds(const PartDps& part, const QuadricDp& dp, const Vec3& anchor)
   bounds.planar = dp.planar;
   bounds.kind = dp_kind(part, dp);
   bounds.color_face = dp.face;
+  bounds.cell = dp.cell;
+  bounds.bound = dp.bound;
   Box3 local;
   for (const Vec3& c : box) local.add(c);
   const Vec3 center = local.center();

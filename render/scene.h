@@ -26,6 +26,8 @@ struct DpBounds {
   /// Planar with pieces only: covers of kCoverResolutions.
   std::unique_ptr<std::array<PlanarCover, 3>> covers;
   std::uint32_t kind = 0;  ///< see draw_list.h; without what depends on the camera
+  Box2 cell;               ///< the DP's
+  double bound = 0;
 };
 DpBounds dp_bounds(const PartDps& part, const QuadricDp& dp, const Vec3& anchor);
 

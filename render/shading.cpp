@@ -5,6 +5,7 @@
 // the shader runs.
 #include <limits>
 
+#include "exact_pixels.h"
 #include "layer.h"
 
 namespace dupin {
@@ -18,6 +19,9 @@ bool needs_curvature(Shading shading) {
   return shading == Shading::k1 || shading == Shading::k2 || shading == Shading::mean ||
          shading == Shading::gaussian;
 }
+
+/// In the picture of exact curvatures, where there are none: shaders/shade.frag's.
+constexpr float kNoCurvature = 1e38F;
 
 /// Curvatures of this size get three quarters of the way to the ends of the color scale.
 double curvature_scale(const Scene::Impl& scene, const DrawOptions& options) {
@@ -51,6 +55,7 @@ Variant shading_variant(unsigned pictures, const DrawOptions& options, const Lay
   for (int i = 0; i < kPictures; ++i)
     if (pictures & 1U << i) v.define(std::string(kLocations[i]) + ' ' + std::to_string(location++));
   if (color) v.define("COLOR");
+  if (color && wants_exact_colors(options)) v.define("EXACT_CURVATURES");
   if (color) v.define("SHADING " + std::to_string(static_cast<int>(options.shading)));
   if (pictures & 1U << kNormalDepthPicture) v.define("NORMAL_DEPTH");
   if (curves) v.define("CURVATURE");
@@ -128,7 +133,37 @@ void Renderer::Impl::clear_pictures(const Pass& pass) {
   }
 }
 
+bool wants_exact_colors(const DrawOptions& options) {
+  return options.exact_model && needs_curvature(options.shading);
+}
+
+/// Depths and numbers are shaded and read first; what is found comes back as a picture.
+Status Renderer::Impl::find_exact_curvatures(const Pass& pass) {
+  DrawOptions plain = *pass.options;
+  plain.exact_model = nullptr;
+  const Status status =
+      shade({pass.scene, pass.view, &plain, 1U << kNormalDepthPicture | 1U << kNumbersPicture});
+  if (!status.ok()) return status;
+  std::vector<float> depth, curvatures;
+  std::vector<std::uint32_t> numbers;
+  read_numbers(depth, numbers);
+  curvatures.assign(depth.size() * 2, kNoCurvature);
+  find_exact(*pass.options->exact_model, *pass.scene, {pass.view, depth, numbers},
+             {nullptr, &curvatures, nullptr});
+  curvatures_ = GlTexture(*gl);
+  gl->ActiveTexture(GL_TEXTURE0 + kCurvaturesUnit);
+  gl->BindTexture(GL_TEXTURE_2D, curvatures_.name());
+  gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RG32F, width_, height_, 0, GL_RG, GL_FLOAT, curvatures.data());
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    gl->TexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);
+  return {};
+}
+
 Status Renderer::Impl::shade(const Pass& pass) {
+  if (pass.exact_colors()) {
+    const Status found = find_exact_curvatures(pass);
+    if (!found.ok()) return found;
+  }
   if (pass.at_once && pass.samples == 1 && pass.scene->layers.empty()) return {};
   Status status = bind_shading_framebuffer(pass.pictures);
   if (!status.ok()) return status;

@@ -30,9 +30,11 @@ unsigned pictures_for(unsigned outputs) {
   unsigned pictures = 0;
   if (outputs & kScreen) pictures |= 1U << kScreenPicture;
   if (outputs & kColor) pictures |= 1U << kColorPicture;
-  if (outputs & (kNormal | kDepth | kPosition | kUv)) pictures |= 1U << kNormalDepthPicture;
+  // What is told from the exact surface starts from depths and numbers.
+  constexpr unsigned kFromExact = kUv | kCurvature | kDirection;
+  if (outputs & (kNormal | kDepth | kPosition | kFromExact)) pictures |= 1U << kNormalDepthPicture;
   if (outputs & (kCurvature | kDirection)) pictures |= 1U << kCurvaturePicture | 1U << kDirectionPicture;
-  if (outputs & (kFace | kPrimitive | kUv)) pictures |= 1U << kNumbersPicture;
+  if (outputs & (kFace | kPrimitive | kFromExact)) pictures |= 1U << kNumbersPicture;
   return pictures;
 }
 
@@ -44,6 +46,7 @@ Status Renderer::Impl::prepare_targets(int width, int height, unsigned pictures,
   if (width != width_ || height != height_) {
     for (GlTexture& picture : pictures_) picture = {};
     sample_ = {};
+    curvatures_ = {};
     allocate(*gl, ids_, {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT}, width, height);
     allocate(*gl, depth_, {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT}, width, height);
     gl->BindFramebuffer(GL_FRAMEBUFFER, visibility_framebuffer_.name());

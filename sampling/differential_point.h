@@ -27,7 +27,8 @@ struct DifferentialPoint {
   /// far the osculating circles in the principal directions are from the rectangle at its edges.
   double bound = 0;
   std::uint32_t face = 0;  ///< index in the part
-  /// The rectangle is not the one that ε and δ make (adaptive and certified points, some of a mesh's vertices).
+  /// The rectangle is not the one that ε and δ make (adaptive and certified points, some of a mesh's
+  /// vertices).
   bool own_size = false;
 
   Vec3 n() const { return cross(u, v); }

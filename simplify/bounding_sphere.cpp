@@ -40,8 +40,8 @@ Sphere of_three(const Sphere& a, const Sphere& b, const Sphere& c) {
   return {circle.center, circle.radius + std::max({a.radius, b.radius, c.radius})};
 }
 
-/// With its centre on the axis of the circle of a, b, c, at the height where the sphere around them and the one around
-/// d are the same size; the circle's own centre where d lies within.
+/// With its centre on the axis of the circle of a, b, c, at the height where the sphere around them and the
+/// one around d are the same size; the circle's own centre where d lies within.
 Sphere of_four(const Sphere& a, const Sphere& b, const Sphere& c, const Sphere& d) {
   const Circle base = triangle_circle(a.center, b.center, c.center);
   const double base_radius = std::max({a.radius, b.radius, c.radius});
@@ -49,7 +49,9 @@ Sphere of_four(const Sphere& a, const Sphere& b, const Sphere& c, const Sphere& 
   const Vec3 axis = l > 0 ? base.normal / l : Vec3{};
   const Vec3 to_d = d.center - base.center;
   const double height = dot(to_d, axis), aside2 = std::max(0.0, dot(to_d, to_d) - height * height);
-  const auto around_base = [&](double t) { return std::sqrt(base.radius * base.radius + t * t) + base_radius; };
+  const auto around_base = [&](double t) {
+    return std::sqrt(base.radius * base.radius + t * t) + base_radius;
+  };
   const auto around_d = [&](double t) { return std::sqrt(aside2 + (height - t) * (height - t)) + d.radius; };
   double lo = 0, hi = height;  // on the way to d the first grows and the second shrinks
   if (around_d(0) <= around_base(0)) hi = 0;
@@ -66,8 +68,8 @@ std::optional<Sphere> containing_one(std::span<const Sphere> spheres) {
   return std::nullopt;
 }
 
-/// Steps towards the farthest sphere that get shorter: Bădoiu and Clarkson's way to the smallest one. The first are short,
-/// since the start is near it already.
+/// Steps towards the farthest sphere that get shorter: Bădoiu and Clarkson's way to the smallest one. The
+/// first are short, since the start is near it already.
 Sphere tightened(Sphere sphere, std::span<const Sphere> spheres) {
   constexpr int kSteps = 24, kFirstStep = 8;
   Vec3 at = sphere.center;
@@ -105,8 +107,8 @@ Sphere published_sphere_of_spheres(std::span<const Sphere> s) {
     best = of_three(s[0], s[1], s[2]);
   } else {
     best = of_four(s[0], s[1], s[2], s[3]);
-    for (const Sphere& other : {of_four(s[0], s[1], s[3], s[2]), of_four(s[0], s[2], s[3], s[1]),
-                                of_four(s[1], s[2], s[3], s[0])})
+    for (const Sphere& other :
+         {of_four(s[0], s[1], s[3], s[2]), of_four(s[0], s[2], s[3], s[1]), of_four(s[1], s[2], s[3], s[0])})
       if (other.radius < best.radius) best = other;
   }
   return best;

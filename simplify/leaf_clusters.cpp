@@ -113,7 +113,8 @@ class ChunkClusters {
     for (std::uint32_t side = 0; side < 3 * count_; ++side) {
       const std::size_t triangle = triangles_[side / 3];
       const int k = static_cast<int>(side % 3);
-      const std::uint32_t a = mesh_.place[mesh_.vertex(triangle, k)], b = mesh_.place[mesh_.vertex(triangle, (k + 1) % 3)];
+      const std::uint32_t a = mesh_.place[mesh_.vertex(triangle, k)],
+                          b = mesh_.place[mesh_.vertex(triangle, (k + 1) % 3)];
       if (a == b) continue;
       const std::uint64_t key = std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
       std::size_t at = (key * 0x9e3779b97f4a7c15u) >> 40 & (kSlots - 1);
@@ -141,8 +142,8 @@ class ChunkClusters {
     return count;
   }
 
-  /// Merges clusters of `least` to `most` triangles with such a neighbour: of those that have the fewest others to go to,
-  /// the one with which it stays smallest.
+  /// Merges clusters of `least` to `most` triangles with such a neighbour: of those that have the fewest
+  /// others to go to, the one with which it stays smallest.
   void merge_all(std::uint32_t least, std::uint32_t most) {
     for (std::uint32_t i = 0; i < clusters_.size(); ++i) {
       const Cluster& c = clusters_[i];

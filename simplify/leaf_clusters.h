@@ -16,8 +16,8 @@ struct LeafCluster {
   std::uint32_t size = 0;
 };
 
-/// Every triangle is in one cluster. Triangles of a cluster are joined by edges, are of one group and either all or none
-/// of them of a closed surface. Does not depend on the number of threads.
+/// Every triangle is in one cluster. Triangles of a cluster are joined by edges, are of one group and either
+/// all or none of them of a closed surface. Does not depend on the number of threads.
 std::vector<LeafCluster> cluster_triangles(const TreeMesh& mesh);
 
 /// The order of the points along a space-filling curve.

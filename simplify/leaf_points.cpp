@@ -15,7 +15,8 @@ constexpr std::size_t kNeighbours = 8;  ///< that a point's normal is found acro
 /// The triangles' corners at each place, in the triangles' order; 3 t + k each.
 struct CornersAtPlaces {
   std::vector<std::uint32_t> starts, corners;
-  explicit CornersAtPlaces(const TreeMesh& mesh) : starts(mesh.place.size() + 1, 0), corners(3 * mesh.size()) {
+  explicit CornersAtPlaces(const TreeMesh& mesh)
+      : starts(mesh.place.size() + 1, 0), corners(3 * mesh.size()) {
     const auto each = [&](auto&& use) {
       for (std::uint32_t t = 0; t < mesh.size(); ++t)
         for (int k = 0; k < 3; ++k) use(mesh.place[mesh.vertex(t, k)], 3 * t + static_cast<std::uint32_t>(k));
@@ -76,14 +77,16 @@ std::vector<LeafPoint> points_of_triangles(const TreeMesh& mesh, const std::vect
       used.size(),
       [&](std::size_t i) {
         const std::uint32_t place = used[i];
-        points[i] = point_of_corners(mesh, grid, place,
-                                     {at.corners.data() + at.starts[place], at.starts[place + 1] - at.starts[place]});
+        points[i] =
+            point_of_corners(mesh, grid, place,
+                             {at.corners.data() + at.starts[place], at.starts[place + 1] - at.starts[place]});
       },
       kGrain);
   return points;
 }
 
-/// Across the plane that fits the points best: the direction in which they extend least, by a few steps of inverse iteration.
+/// Across the plane that fits the points best: the direction in which they extend least, by a few steps of
+/// inverse iteration.
 Vec3 plane_normal(std::span<const Vec3> points) {
   Vec3 mean;
   for (const Vec3& p : points) mean += p / static_cast<double>(points.size());

@@ -71,7 +71,8 @@ class BitReader {
   bool failed_ = false;
 };
 
-/// The edge of the leaf's earlier triangles that `t` lies on the other side of, and t's vertex that is not on it.
+/// The edge of the leaf's earlier triangles that `t` lies on the other side of, and t's vertex that is not on
+/// it.
 struct Joint {
   std::uint32_t code = kNoEdge;
   std::uint16_t vertex = 0;
@@ -80,7 +81,8 @@ Joint joint_of(std::span<const std::array<std::uint16_t, 3>> earlier, const std:
   for (std::uint32_t j = 0; j < earlier.size(); ++j)
     for (std::uint32_t k = 0; k < 3; ++k)
       for (std::uint32_t e = 0; e < 3; ++e)
-        if (earlier[j][k] == t[(e + 1) % 3] && earlier[j][(k + 1) % 3] == t[e]) return {3 * j + k, t[(e + 2) % 3]};
+        if (earlier[j][k] == t[(e + 1) % 3] && earlier[j][(k + 1) % 3] == t[e])
+          return {3 * j + k, t[(e + 2) % 3]};
   return {};
 }
 
@@ -140,7 +142,8 @@ std::string BlockBuilder::bytes() const {
   std::array<std::uint32_t, 3> lo, hi{};
   lo.fill(block_.vertices.empty() ? 0 : kLargestGridCoordinate);
   for (const BlockVertex& v : block_.vertices)
-    for (std::size_t k = 0; k < 3; ++k) lo[k] = std::min(lo[k], v.position[k]), hi[k] = std::max(hi[k], v.position[k]);
+    for (std::size_t k = 0; k < 3; ++k)
+      lo[k] = std::min(lo[k], v.position[k]), hi[k] = std::max(hi[k], v.position[k]);
   std::string bytes;
   for (std::size_t k = 0; k < 3; ++k) bytes.push_back(static_cast<char>(bits_for(hi[k] - lo[k])));
   bytes.push_back(colors_ ? 1 : 0);
@@ -151,12 +154,15 @@ std::string BlockBuilder::bytes() const {
   for (const BlockVertex& v : block_.vertices) {
     for (std::size_t k = 0; k < 3; ++k) out.put(v.position[k] - lo[k], bits_for(hi[k] - lo[k]));
     out.put(v.normal, kNormalWord);
-    if (colors_) out.put(v.color[0] | std::uint32_t{v.color[1]} << 8 | std::uint32_t{v.color[2]} << 16, kColorWord);
+    if (colors_)
+      out.put(v.color[0] | std::uint32_t{v.color[1]} << 8 | std::uint32_t{v.color[2]} << 16, kColorWord);
   }
-  const int index_bits = block_.vertices.empty() ? 0 : bits_for(static_cast<std::uint32_t>(block_.vertices.size() - 1));
+  const int index_bits =
+      block_.vertices.empty() ? 0 : bits_for(static_cast<std::uint32_t>(block_.vertices.size() - 1));
   for (std::size_t leaf = 0; leaf + 1 < block_.leaf_starts.size(); ++leaf)
     for (std::size_t t = block_.leaf_starts[leaf]; t < block_.leaf_starts[leaf + 1]; ++t) {
-      const std::span earlier(block_.triangles.begin() + block_.leaf_starts[leaf], t - block_.leaf_starts[leaf]);
+      const std::span earlier(block_.triangles.begin() + block_.leaf_starts[leaf],
+                              t - block_.leaf_starts[leaf]);
       const Joint joint = joint_of(earlier, block_.triangles[t]);
       if (!earlier.empty()) out.put(joint.code, kCodeWord);
       if (joint.code != kNoEdge)
@@ -190,7 +196,8 @@ bool decode_block(std::span<const char> bytes, std::span<const std::uint8_t> lea
       v.position[k] = std::min(kLargestGridCoordinate, lo[k] + in.get(widths[k]));
     v.normal = in.get(kNormalWord);
     const std::uint32_t c = colors ? in.get(kColorWord) : 0xffffff;
-    v.color = {static_cast<std::uint8_t>(c), static_cast<std::uint8_t>(c >> 8), static_cast<std::uint8_t>(c >> 16), 255};
+    v.color = {static_cast<std::uint8_t>(c), static_cast<std::uint8_t>(c >> 8),
+               static_cast<std::uint8_t>(c >> 16), 255};
   }
   const int index_bits = vertices == 0 ? 0 : bits_for(vertices - 1);
   out.triangles.reserve(triangles);

@@ -6,8 +6,8 @@
 //   then bits      each vertex: x, y, z beyond the least, normal (22), red, green and blue (24);
 //                  each triangle: how it goes on from its leaf's others, and its new vertices
 //
-// A leaf's first triangle has three vertices; a further one has a code of 4 bits: 3 j + k, and one vertex, if it lies on the
-// other side of edge k of the leaf's triangle j; 15, and three vertices, if not.
+// A leaf's first triangle has three vertices; a further one has a code of 4 bits: 3 j + k, and one vertex, if
+// it lies on the other side of edge k of the leaf's triangle j; 15, and three vertices, if not.
 #ifndef DUPIN_SIMPLIFY_MESH_BLOCK_H
 #define DUPIN_SIMPLIFY_MESH_BLOCK_H
 
@@ -40,7 +40,9 @@ struct MeshBlock {
 /// Collects the vertices of a block, equal ones once.
 class BlockBuilder {
  public:
-  explicit BlockBuilder(bool colors) : colors_(colors), table_(2048, kFree) { block_.leaf_starts.push_back(0); }
+  explicit BlockBuilder(bool colors) : colors_(colors), table_(2048, kFree) {
+    block_.leaf_starts.push_back(0);
+  }
   /// A leaf's triangles, in its order or another.
   void add_leaf(std::span<const std::array<BlockVertex, 3>> triangles);
   std::string bytes() const;
@@ -53,8 +55,8 @@ class BlockBuilder {
   std::vector<std::uint16_t> table_;
 };
 
-/// `leaf_triangles`: how many triangles each leaf of the block has, as its nodes say. False if the bytes do not hold what they
-/// promise; nothing outside of them is read, and no index is out of range.
+/// `leaf_triangles`: how many triangles each leaf of the block has, as its nodes say. False if the bytes do
+/// not hold what they promise; nothing outside of them is read, and no index is out of range.
 bool decode_block(std::span<const char> bytes, std::span<const std::uint8_t> leaf_triangles, MeshBlock& out);
 
 }  // namespace dupin

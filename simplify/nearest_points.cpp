@@ -19,7 +19,8 @@ struct Points {
 
 struct NearestPoints::Tree {
   Points points;
-  nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Points>, Points, 3, std::uint32_t> index;
+  nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Points>, Points, 3, std::uint32_t>
+      index;
   explicit Tree(const std::vector<Vec3>& list) : points{list}, index(3, points, {16}) { index.buildIndex(); }
 };
 

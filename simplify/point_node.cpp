@@ -20,7 +20,8 @@ double sign_of(double x) {
 }
 
 std::uint32_t octahedron_step(double x) {
-  return static_cast<std::uint32_t>(std::clamp(std::floor((0.5 * x + 0.5) * kNormalSteps + 0.5), 0.0, kNormalSteps));
+  return static_cast<std::uint32_t>(
+      std::clamp(std::floor((0.5 * x + 0.5) * kNormalSteps + 0.5), 0.0, kNormalSteps));
 }
 
 /// 8 bits of x in [-1, 1] by its root.
@@ -70,7 +71,8 @@ std::uint32_t encode_normal(const Vec3& n) {
 
 Vec3 decode_normal(std::uint32_t bits) {
   constexpr std::uint32_t kMask = (1U << kNormalBits) - 1;
-  double x = 2 * ((bits & kMask) / kNormalSteps) - 1, y = 2 * ((bits >> kNormalBits & kMask) / kNormalSteps) - 1;
+  double x = 2 * ((bits & kMask) / kNormalSteps) - 1,
+         y = 2 * ((bits >> kNormalBits & kMask) / kNormalSteps) - 1;
   const double z = 1 - std::abs(x) - std::abs(y);
   if (z < 0) {
     const double folded = (1 - std::abs(y)) * sign_of(x);
@@ -86,7 +88,9 @@ std::uint32_t encode_cone(double sine, bool beyond_right_angle) {
 }
 
 std::uint32_t encode_color(const Rgba8& c) {
-  const auto scaled = [](int value, int most) { return static_cast<std::uint32_t>((value * most + 127) / 255); };
+  const auto scaled = [](int value, int most) {
+    return static_cast<std::uint32_t>((value * most + 127) / 255);
+  };
   return scaled(c[0], 31) << 11 | scaled(c[1], 63) << 5 | scaled(c[2], 31);
 }
 
@@ -98,7 +102,8 @@ Rgba8 decode_color(std::uint32_t color) {
 }
 
 EncodedNode encode(const PointNode& node) {
-  const std::uint32_t x = clamp_grid(node.center.x), y = clamp_grid(node.center.y), z = clamp_grid(node.center.z);
+  const std::uint32_t x = clamp_grid(node.center.x), y = clamp_grid(node.center.y),
+                      z = clamp_grid(node.center.z);
   EncodedNode out;
   out.words[0] = x | y << 21;
   out.words[1] = y >> 11 | z << 10;
@@ -109,8 +114,8 @@ EncodedNode encode(const PointNode& node) {
 }
 
 PointNode decode(const EncodedNode& n) {
-  return {node_center(n),          node_radius(n), node_normal(n), node_cone(n), node_triangles(n),
-          (n.words[2] >> 24) << 8 | n.words[3] >> 24};
+  return {node_center(n), node_radius(n),    node_normal(n),
+          node_cone(n),   node_triangles(n), (n.words[2] >> 24) << 8 | n.words[3] >> 24};
 }
 
 std::uint32_t encode_curvature(const NodeCurvature& c) {

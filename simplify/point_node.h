@@ -4,8 +4,8 @@
 // word 2      radius (16 bits: 5 of exponent, 11 of mantissa), sine of the cone's half-angle (8), colour (8)
 // word 3      normal on an octahedron (11 + 11), triangles of a leaf − 1 (2), colour (8)
 //
-// Whatever bounds something is rounded outwards: a decoded sphere contains what it stands for. The shaders decode nodes
-// too (shaders/point_node.glsl): both must do the same.
+// Whatever bounds something is rounded outwards: a decoded sphere contains what it stands for. The shaders
+// decode nodes too (shaders/point_node.glsl): both must do the same.
 #ifndef DUPIN_SIMPLIFY_POINT_NODE_H
 #define DUPIN_SIMPLIFY_POINT_NODE_H
 
@@ -37,8 +37,8 @@ struct PointGrid {
 struct PointNode {
   Vec3 center;
   double radius = 0;
-  Vec3 normal;              ///< unit
-  std::uint32_t cone = 0;   ///< kNoCone: normals in all directions, or a surface whose inside can be seen
+  Vec3 normal;                  ///< unit
+  std::uint32_t cone = 0;       ///< kNoCone: normals in all directions, or a surface whose inside can be seen
   std::uint32_t triangles = 0;  ///< of a leaf
   std::uint32_t color = 0;      ///< 5, 6, 5 bits, red highest
 };
@@ -48,7 +48,8 @@ struct EncodedNode {
 };
 static_assert(sizeof(EncodedNode) == 16);
 
-/// Rounds to the grid; radius and cone must hold for the rounded values already, but are rounded up themselves.
+/// Rounds to the grid; radius and cone must hold for the rounded values already, but are rounded up
+/// themselves.
 EncodedNode encode(const PointNode& node);
 PointNode decode(const EncodedNode& node);
 
@@ -90,7 +91,8 @@ inline std::uint32_t node_triangles(const EncodedNode& n) {
   return (n.words[3] >> 22 & 3) + 1;
 }
 
-/// Principal curvatures of the surface that a node stands for, by how its children's normals differ: 0 in a leaf.
+/// Principal curvatures of the surface that a node stands for, by how its children's normals differ: 0 in a
+/// leaf.
 struct NodeCurvature {
   double k1 = 0, k2 = 0;  ///< times the node's radius; |k1| >= |k2|, positive towards the normal
   double angle = 0;       ///< of k1's direction, from any_perpendicular(normal) counter-clockwise, 0 … π

@@ -53,7 +53,8 @@ bool finite(const double* values, int count) {
   return true;
 }
 
-/// The sections that a header promises lie in the file, one behind the other, and have the sizes that the counts ask for.
+/// The sections that a header promises lie in the file, one behind the other, and have the sizes that the
+/// counts ask for.
 Status check_sections(const PointTreeHeader& h, const TreeShape& shape) {
   std::uint64_t end = sizeof(PointTreeHeader);
   for (const ByteRange& s : h.sections) {
@@ -122,7 +123,8 @@ Status PointTree::read_header() {
   PointTreeHeader h;
   if (all.size() < sizeof h) return damaged("it is too short");
   std::memcpy(&h, all.data(), sizeof h);
-  if (std::memcmp(h.magic, kPointTreeMagic, sizeof h.magic) != 0) return damaged("it does not begin as one does");
+  if (std::memcmp(h.magic, kPointTreeMagic, sizeof h.magic) != 0)
+    return damaged("it does not begin as one does");
   if (h.version != kPointTreeVersion)
     return {StatusCode::unreadable, "the point tree is of version " + std::to_string(h.version) + ", not " +
                                         std::to_string(kPointTreeVersion)};
@@ -130,8 +132,8 @@ Status PointTree::read_header() {
     return damaged("its header's checksum is wrong");
   if (h.file_bytes != all.size()) return damaged("its length is wrong");
   if (h.kind > 1 || h.leaves == 0 || h.leaves > kMostLeaves || h.triangles > kMostLeafTriangles * h.leaves ||
-      !finite(h.origin, 3) || !finite(h.box_lo, 3) || !finite(h.box_hi, 3) || !(h.step > 0) || !finite(&h.step, 1) ||
-      !(h.scale > 0) || !finite(&h.scale, 1))
+      !finite(h.origin, 3) || !finite(h.box_lo, 3) || !finite(h.box_hi, 3) || !(h.step > 0) ||
+      !finite(&h.step, 1) || !(h.scale > 0) || !finite(&h.scale, 1))
     return damaged("its header's numbers are out of range");
   shape_ = TreeShape(h.leaves);
   if (Status status = check_sections(h, shape_); !status.ok()) return status;
@@ -154,7 +156,8 @@ Status PointTree::read_header() {
   const ByteRange texts = h.sections[kTexts];
   if (!page_is_good(texts.offset, texts.size)) return damaged("its texts' checksum is wrong");
   TextReader in(sections_->section[kTexts]);
-  if (!in.text(info_.source.name) || !in.text(info_.source.unit_note)) return damaged("its texts are cut off");
+  if (!in.text(info_.source.name) || !in.text(info_.source.unit_note))
+    return damaged("its texts are cut off");
   for (std::uint32_t i = 0; i < h.groups; ++i)
     if (MeshGroup group; read_group(in, group))
       groups_.push_back(std::move(group));
@@ -233,7 +236,8 @@ bool PointTree::block(std::size_t block, MeshBlock& out) const {
   const std::span<const char> entries = sections_->section[kBlocks], bytes = sections_->section[kBlockBytes];
   if (info_.kind != PointTreeKind::pop || block >= block_count()) return false;
   const char* const all = bytes_->all().data();
-  if (!page_is_good(static_cast<std::uint64_t>(entries.data() - all) + block * sizeof(BlockEntry), 2 * sizeof(BlockEntry)))
+  if (!page_is_good(static_cast<std::uint64_t>(entries.data() - all) + block * sizeof(BlockEntry),
+                    2 * sizeof(BlockEntry)))
     return fail();
   const BlockEntry here = sections_->block(block), next = sections_->block(block + 1);
   if (next.offset < here.offset || next.offset > bytes.size()) return fail();
@@ -241,7 +245,8 @@ bool PointTree::block(std::size_t block, MeshBlock& out) const {
   if (!page_is_good(static_cast<std::uint64_t>(packed.data() - all), packed.size())) return fail();
 
   std::uint8_t counts[kBlockLeaves];
-  const std::uint64_t first = block * kBlockLeaves, last = std::min<std::uint64_t>(first + kBlockLeaves, info_.leaves);
+  const std::uint64_t first = block * kBlockLeaves,
+                      last = std::min<std::uint64_t>(first + kBlockLeaves, info_.leaves);
   for (std::uint64_t rank = first; rank < last; ++rank) {
     const auto leaf = nodes(shape_.leaf_node(rank), 1);
     if (leaf.empty()) return fail();
@@ -258,7 +263,8 @@ Status PointTree::damage() const {
   if (page != ~std::uint64_t{0})
     return damaged("the checksum of the page at byte " +
                    std::to_string(sizeof(PointTreeHeader) + page * kPointTreePage) + " is wrong");
-  if (block != ~std::uint64_t{0}) return damaged("block " + std::to_string(block) + " does not hold what it promises");
+  if (block != ~std::uint64_t{0})
+    return damaged("block " + std::to_string(block) + " does not hold what it promises");
   return {};
 }
 
@@ -272,7 +278,8 @@ Status PointTree::verify() const {
 }
 
 bool is_point_tree(std::span<const char> head) {
-  return head.size() >= sizeof kPointTreeMagic && std::memcmp(head.data(), kPointTreeMagic, sizeof kPointTreeMagic) == 0;
+  return head.size() >= sizeof kPointTreeMagic &&
+         std::memcmp(head.data(), kPointTreeMagic, sizeof kPointTreeMagic) == 0;
 }
 
 }  // namespace dupin

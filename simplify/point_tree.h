@@ -1,11 +1,11 @@
-// A mesh as a tree of bounding spheres with its triangles at the leaves, after Chen & Nguyen, "POP: A Hybrid Point and
-// Polygon Rendering System for Large Data", 2001; or, without triangles, with its vertices at the leaves, after
-// Rusinkiewicz & Levoy, "QSplat", 2000.
+// A mesh as a tree of bounding spheres with its triangles at the leaves, after Chen & Nguyen, "POP: A Hybrid
+// Point and Polygon Rendering System for Large Data", 2001; or, without triangles, with its vertices at the
+// leaves, after Rusinkiewicz & Levoy, "QSplat", 2000.
 //
-// A tree is one block of bytes without pointers. In memory and in a cache file (.dpt) it is the same, so that a file is
-// mapped and walked as it lies: what is not looked at is not read. Bytes from a file are not believed: the header is
-// checked when it is opened, every page against its checksum when it is first looked at, and no reference leads out of the
-// tree.
+// A tree is one block of bytes without pointers. In memory and in a cache file (.dpt) it is the same, so that
+// a file is mapped and walked as it lies: what is not looked at is not read. Bytes from a file are not
+// believed: the header is checked when it is opened, every page against its checksum when it is first looked
+// at, and no reference leads out of the tree.
 #ifndef DUPIN_SIMPLIFY_POINT_TREE_H
 #define DUPIN_SIMPLIFY_POINT_TREE_H
 
@@ -60,7 +60,8 @@ class PointTree {
   std::size_t byte_count() const;
   const std::vector<MeshGroup>& groups() const { return groups_; }
 
-  /// Nodes [first, first + count) of the breadth-first order; empty, once and for all, where their page is damaged.
+  /// Nodes [first, first + count) of the breadth-first order; empty, once and for all, where their page is
+  /// damaged.
   std::span<const EncodedNode> nodes(std::uint64_t first, std::uint64_t count) const;
   /// Of an interior node; 0 in a tree that has none.
   std::uint32_t curvature(std::uint64_t node) const;
@@ -103,9 +104,10 @@ struct PointTreeOptions {
   Progress progress;
 };
 
-/// unreadable for a mesh without vertices; a mesh without polygons becomes a qsplat tree of its points. The result does not
-/// depend on the number of threads.
-Result<std::shared_ptr<const PointTree>> build_point_tree(const PolygonMesh& mesh, const PointTreeOptions& options);
+/// unreadable for a mesh without vertices; a mesh without polygons becomes a qsplat tree of its points. The
+/// result does not depend on the number of threads.
+Result<std::shared_ptr<const PointTree>> build_point_tree(const PolygonMesh& mesh,
+                                                          const PointTreeOptions& options);
 
 /// Writes under a hidden name beside `path` and renames.
 Status write_point_tree(const PointTree& tree, const std::string& path);

@@ -35,7 +35,8 @@ struct NodeSums {
   Rgba8 mean_color() const {
     Rgba8 c{0, 0, 0, 255};
     for (std::size_t k = 0; k < 3; ++k)
-      c[k] = static_cast<std::uint8_t>(std::lround(std::clamp(color[k] / static_cast<float>(weight), 0.0F, 255.0F)));
+      c[k] = static_cast<std::uint8_t>(
+          std::lround(std::clamp(color[k] / static_cast<float>(weight), 0.0F, 255.0F)));
     return c;
   }
 };
@@ -71,12 +72,11 @@ class ConeBuilder {
   double half_angle_ = 0;
 };
 
-/// The symmetric matrix that takes steps in the tangent plane to changes of the normal, by least squares over the
-/// children; as curvatures it has the sign turned.
+/// The symmetric matrix that takes steps in the tangent plane to changes of the normal, by least squares over
+/// the children; as curvatures it has the sign turned.
 class ShapeFit {
  public:
-  explicit ShapeFit(const Vec3& normal)
-      : x_(any_perpendicular(normal)), y_(cross(normal, x_)) {}
+  explicit ShapeFit(const Vec3& normal) : x_(any_perpendicular(normal)), y_(cross(normal, x_)) {}
   void add(double weight, const Vec3& step, const Vec3& turn) {
     const double x = dot(step, x_), y = dot(step, y_), u = dot(turn, x_), v = dot(turn, y_);
     xx_ += weight * x * x, xy_ += weight * x * y, yy_ += weight * y * y;
@@ -87,8 +87,8 @@ class ShapeFit {
     if (!(ridge > 0)) return {};
     // a xx + b xy = xu,  b xy + c yy = yv,  (a + c) xy + b (xx + yy) = yu + xv
     const double xx = xx_ + ridge, yy = yy_ + ridge, both = xx_ + yy_ + ridge;
-    const double b = (cross_ - xy_ * (xu_ / xx + yv_ / yy)) /
-                     std::max(ridge, both - xy_ * xy_ * (1 / xx + 1 / yy));
+    const double b =
+        (cross_ - xy_ * (xu_ / xx + yv_ / yy)) / std::max(ridge, both - xy_ * xy_ * (1 / xx + 1 / yy));
     const double a = (xu_ - b * xy_) / xx, c = (yv_ - b * xy_) / yy;
     return principal(-a * radius, -b * radius, -c * radius);
   }
@@ -115,11 +115,12 @@ class Builder {
   Result<std::shared_ptr<const PointTree>> run() {
     if (mesh_.empty()) return {StatusCode::unreadable, "a mesh without vertices has no tree"};
     box_ = bounding_box(mesh_);
-    if (!(box_.diagonal() < 1e100)) return {StatusCode::unreadable, "the mesh is too large for numbers to hold"};
+    if (!(box_.diagonal() < 1e100))
+      return {StatusCode::unreadable, "the mesh is too large for numbers to hold"};
     grid_ = grid_for(box_);
     kind_ = mesh_.polygon_count() == 0 ? PointTreeKind::qsplat : options_.kind;
-    for (const auto stage : {&Builder::take_mesh, &Builder::make_leaves, &Builder::order_leaves, &Builder::fill_leaves,
-                             &Builder::fill_interior, &Builder::fill_blocks}) {
+    for (const auto stage : {&Builder::take_mesh, &Builder::make_leaves, &Builder::order_leaves,
+                             &Builder::fill_leaves, &Builder::fill_interior, &Builder::fill_blocks}) {
       if (!report(options_.progress, "building the point tree", done_)) return {StatusCode::cancelled, ""};
       (this->*stage)();
       done_ += 1.0 / 6;
@@ -135,8 +136,8 @@ class Builder {
     colors_ = source_->has_colors();
     places_.resize(mesh_.positions.size());
     parallel_for(
-        places_.size(), [&](std::size_t i) { places_[i] = rounded_to_grid(grid_.to_grid(mesh_.positions[i])); },
-        8 * kGrain);
+        places_.size(),
+        [&](std::size_t i) { places_[i] = rounded_to_grid(grid_.to_grid(mesh_.positions[i])); }, 8 * kGrain);
   }
 
   void make_leaves() {
@@ -151,7 +152,8 @@ class Builder {
     const std::size_t count = pop() ? clusters_.size() : points_.size();
     std::vector<Vec3> centers(count);
     parallel_for(
-        count, [&](std::size_t i) { centers[i] = pop() ? cluster_center(clusters_[i]) : points_[i].sphere.center; },
+        count,
+        [&](std::size_t i) { centers[i] = pop() ? cluster_center(clusters_[i]) : points_[i].sphere.center; },
         kGrain);
     shape_ = TreeShape(count);
     order_ = tree_order(shape_, centers);
@@ -247,11 +249,15 @@ class Builder {
   void fill_interior() {
     if (pop()) curvatures_.resize(shape_.interior());
     std::vector<std::uint64_t> firsts{0};
-    while (TreeShape::first_child(firsts.back()) < shape_.nodes()) firsts.push_back(TreeShape::first_child(firsts.back()));
+    while (TreeShape::first_child(firsts.back()) < shape_.nodes())
+      firsts.push_back(TreeShape::first_child(firsts.back()));
     for (std::size_t level = firsts.size(); level-- > 0;) {
       const std::uint64_t first = firsts[level];
-      const std::uint64_t last = std::min(shape_.interior(), level + 1 < firsts.size() ? firsts[level + 1] : first + 1);
-      if (first < last) parallel_for(last - first, [&](std::size_t i) { fill_node(first + i); }, kGrain / 4);
+      const std::uint64_t last =
+          std::min(shape_.interior(), level + 1 < firsts.size() ? firsts[level + 1] : first + 1);
+      if (first < last)
+        parallel_for(
+            last - first, [&](std::size_t i) { fill_node(first + i); }, kGrain / 4);
     }
   }
 
@@ -279,7 +285,8 @@ class Builder {
     node.cone = cone.encoded();
     if (colors_) node.color = encode_color(sums.mean_color());
     nodes_[index] = encode(node);
-    if (pop()) curvatures_[index] = encode_curvature(curvature(index, decode_radius(encode_radius(node.radius))));
+    if (pop())
+      curvatures_[index] = encode_curvature(curvature(index, decode_radius(encode_radius(node.radius))));
   }
 
   NodeCurvature curvature(std::uint64_t index, double radius) const {
@@ -297,17 +304,20 @@ class Builder {
   void fill_blocks() {
     if (!pop()) return;
     blocks_.resize((shape_.leaves() + kBlockLeaves - 1) / kBlockLeaves);
-    parallel_for(blocks_.size(), [&](std::size_t i) { blocks_[i] = block_bytes(i); }, 4);
+    parallel_for(
+        blocks_.size(), [&](std::size_t i) { blocks_[i] = block_bytes(i); }, 4);
   }
 
   std::string block_bytes(std::size_t index) const {
     BlockBuilder builder(colors_);
-    const std::size_t first = index * kBlockLeaves, last = std::min<std::size_t>(first + kBlockLeaves, shape_.leaves());
+    const std::size_t first = index * kBlockLeaves,
+                      last = std::min<std::size_t>(first + kBlockLeaves, shape_.leaves());
     for (std::size_t rank = first; rank < last; ++rank) {
       const LeafCluster& cluster = clusters_[order_[rank]];
       std::array<std::array<BlockVertex, 3>, kMostLeafTriangles> triangles;
       for (std::uint32_t i = 0; i < cluster.size; ++i)
-        for (int k = 0; k < 3; ++k) triangles[i][static_cast<std::size_t>(k)] = corner(cluster.triangles[i], k);
+        for (int k = 0; k < 3; ++k)
+          triangles[i][static_cast<std::size_t>(k)] = corner(cluster.triangles[i], k);
       builder.add_leaf({triangles.data(), cluster.size});
     }
     return builder.bytes();
@@ -332,12 +342,14 @@ class Builder {
     content.leaves = shape_.leaves();
     content.groups = &mesh_.groups;
     content.blocks = &blocks_;
-    content.leaf_triangles = [this](std::uint64_t rank) { return node_triangles(nodes_[shape_.leaf_node(rank)]); };
+    content.leaf_triangles = [this](std::uint64_t rank) {
+      return node_triangles(nodes_[shape_.leaf_node(rank)]);
+    };
     return PointTree::from_bytes(std::make_shared<OwnedBytes>(point_tree_bytes(content), true));
   }
 
-  /// Bounds of parents contain those of their children by this much more than rounding could take away, so that what is decided
-  /// for a node follows from what is decided for its children.
+  /// Bounds of parents contain those of their children by this much more than rounding could take away, so
+  /// that what is decided for a node follows from what is decided for its children.
   static constexpr double kNesting = 1e-9;
 
   const PolygonMesh& mesh_;
@@ -361,7 +373,8 @@ class Builder {
 
 }  // namespace
 
-Result<std::shared_ptr<const PointTree>> build_point_tree(const PolygonMesh& mesh, const PointTreeOptions& options) {
+Result<std::shared_ptr<const PointTree>> build_point_tree(const PolygonMesh& mesh,
+                                                          const PointTreeOptions& options) {
   return Builder(mesh, options).run();
 }
 

@@ -1,4 +1,5 @@
-// The bytes of a point tree: a header, then sections, then a checksum for each page of everything behind the header.
+// The bytes of a point tree: a header, then sections, then a checksum for each page of everything behind the
+// header.
 #ifndef DUPIN_SIMPLIFY_POINT_TREE_LAYOUT_H
 #define DUPIN_SIMPLIFY_POINT_TREE_LAYOUT_H
 
@@ -8,7 +9,8 @@
 
 namespace dupin {
 
-static_assert(std::endian::native == std::endian::little, "the format is little-endian and mapped as it lies");
+static_assert(std::endian::native == std::endian::little,
+              "the format is little-endian and mapped as it lies");
 
 inline constexpr char kPointTreeMagic[8] = {'D', 'U', 'P', 'I', 'N', 'D', 'P', 'T'};
 inline constexpr std::uint32_t kPointTreeVersion = 1;

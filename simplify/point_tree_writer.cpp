@@ -79,11 +79,13 @@ class Writer {
 
   void put_pages() {
     bytes_.resize((bytes_.size() + 7) / 8 * 8);
-    const std::span<const char> paged(bytes_.data() + sizeof(PointTreeHeader), bytes_.size() - sizeof(PointTreeHeader));
+    const std::span<const char> paged(bytes_.data() + sizeof(PointTreeHeader),
+                                      bytes_.size() - sizeof(PointTreeHeader));
     std::vector<std::uint64_t> sums((paged.size() + kPointTreePage - 1) / kPointTreePage);
     parallel_for(sums.size(), [&](std::size_t i) {
       const std::uint64_t first = i * kPointTreePage;
-      sums[i] = page_checksum(paged.subspan(first, std::min<std::uint64_t>(kPointTreePage, paged.size() - first)));
+      sums[i] =
+          page_checksum(paged.subspan(first, std::min<std::uint64_t>(kPointTreePage, paged.size() - first)));
     });
     put(kPages, sums.data(), sums.size() * 8);
   }

@@ -27,7 +27,8 @@ std::vector<std::uint32_t> find_places(const std::vector<Vec3>& positions) {
   constexpr std::uint32_t kFree = 0xffffffffu;
   std::vector<std::uint32_t> hashes(positions.size()), place(positions.size());
   parallel_for(
-      positions.size(), [&](std::size_t i) { hashes[i] = static_cast<std::uint32_t>(hash(positions[i])); }, kGrain);
+      positions.size(), [&](std::size_t i) { hashes[i] = static_cast<std::uint32_t>(hash(positions[i])); },
+      kGrain);
   const std::size_t slots = std::bit_ceil(2 * positions.size() + 1);
   std::vector<std::uint32_t> table(slots, kFree);
   for (std::uint32_t i = 0; i < positions.size(); ++i) {
@@ -68,7 +69,8 @@ class EdgeEnds {
           if (v[k] != v[(k + 1) % 3]) use(v[k], v[(k + 1) % 3]);
       }
     };
-    // As many leave a place as come to it wherever triangles have three corners, but not where they are degenerate.
+    // As many leave a place as come to it wherever triangles have three corners, but not where they are
+    // degenerate.
     std::vector<std::uint32_t> in(mesh.place.size(), 0);
     each_edge([&](std::uint32_t a, std::uint32_t b) { ++starts_[a + 1], ++in[b]; });
     same_degree_ = std::equal(in.begin(), in.end(), starts_.begin() + 1);
@@ -86,7 +88,8 @@ class EdgeEnds {
     parallel_for(
         result.size(),
         [&](std::size_t i) {
-          const auto first = static_cast<std::ptrdiff_t>(starts_[i]), last = static_cast<std::ptrdiff_t>(starts_[i + 1]);
+          const auto first = static_cast<std::ptrdiff_t>(starts_[i]),
+                     last = static_cast<std::ptrdiff_t>(starts_[i + 1]);
           std::sort(out_.begin() + first, out_.begin() + last);
           std::sort(in_.begin() + first, in_.begin() + last);
           result[i] = std::equal(out_.begin() + first, out_.begin() + last, in_.begin() + first);
@@ -126,7 +129,8 @@ TreeMesh::TreeMesh(const PolygonMesh& mesh)
 
 bool TreeMesh::has_colors() const {
   if (!source.colors.empty() || !source.polygon_colors.empty()) return true;
-  return std::any_of(source.groups.begin(), source.groups.end(), [](const MeshGroup& g) { return g.color.has_value(); });
+  return std::any_of(source.groups.begin(), source.groups.end(),
+                     [](const MeshGroup& g) { return g.color.has_value(); });
 }
 
 Rgba8 TreeMesh::color(std::size_t triangle, int k) const {

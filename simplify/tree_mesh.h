@@ -14,12 +14,13 @@ struct TreeMesh {
   explicit TreeMesh(const PolygonMesh& source);
 
   const PolygonMesh& source;
-  std::vector<std::array<std::uint32_t, 3>> corners;   ///< of each triangle, indices into source.corners
-  std::vector<std::uint32_t> polygons;                 ///< of each triangle; empty: triangle i is polygon i
-  std::vector<std::array<float, 3>> normals;           ///< unit, one a corner of the source
+  std::vector<std::array<std::uint32_t, 3>> corners;  ///< of each triangle, indices into source.corners
+  std::vector<std::uint32_t> polygons;                ///< of each triangle; empty: triangle i is polygon i
+  std::vector<std::array<float, 3>> normals;          ///< unit, one a corner of the source
   /// Per vertex one that stands for all at the same place: what joins triangles.
   std::vector<std::uint32_t> place;
-  /// Per triangle: it is of a surface without border that has its inside behind it, so its back is never seen.
+  /// Per triangle: it is of a surface without border that has its inside behind it, so its back is never
+  /// seen.
   std::vector<bool> closed;
 
   std::size_t size() const { return corners.size(); }
@@ -41,8 +42,8 @@ struct TreeMesh {
   Rgba8 color(std::size_t triangle, int k) const;
 };
 
-/// Which triangles belong to closed surfaces: every edge of the component runs as often one way as the other, and the
-/// volume that it encloses is positive.
+/// Which triangles belong to closed surfaces: every edge of the component runs as often one way as the other,
+/// and the volume that it encloses is positive.
 std::vector<bool> closed_triangles(const TreeMesh& mesh);
 
 }  // namespace dupin

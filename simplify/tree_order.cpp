@@ -73,7 +73,8 @@ class Splitter {
     const auto at = [this](std::uint64_t i) { return items_.begin() + static_cast<std::ptrdiff_t>(i); };
     std::array<float, 3> lo = items_[first].center, hi = lo;
     for (auto i = at(first); i != at(last); ++i)
-      for (std::size_t k = 0; k < 3; ++k) lo[k] = std::min(lo[k], i->center[k]), hi[k] = std::max(hi[k], i->center[k]);
+      for (std::size_t k = 0; k < 3; ++k)
+        lo[k] = std::min(lo[k], i->center[k]), hi[k] = std::max(hi[k], i->center[k]);
     std::size_t axis = 0;
     for (std::size_t k = 1; k < 3; ++k)
       if (hi[k] - lo[k] > hi[axis] - lo[axis]) axis = k;

@@ -1,5 +1,5 @@
-// A complete four-way tree in breadth-first order, which needs no pointers: the children of node i are 4i + 1 … 4i + 4,
-// the interior nodes come first, and leaves have ranks in the order of a depth-first walk.
+// A complete four-way tree in breadth-first order, which needs no pointers: the children of node i are 4i + 1
+// … 4i + 4, the interior nodes come first, and leaves have ranks in the order of a depth-first walk.
 #ifndef DUPIN_SIMPLIFY_TREE_SHAPE_H
 #define DUPIN_SIMPLIFY_TREE_SHAPE_H
 
@@ -31,7 +31,8 @@ class TreeShape {
     return is_leaf(node) ? 0 : std::min<std::uint64_t>(4, nodes_ - first_child(node));
   }
 
-  /// Leaves on the last level come first in a depth-first walk: those on the level above it are all to their right.
+  /// Leaves on the last level come first in a depth-first walk: those on the level above it are all to their
+  /// right.
   std::uint64_t leaf_rank(std::uint64_t node) const {
     return node >= first_last_ ? node - first_last_ : nodes_ - first_last_ + (node - interior_);
   }

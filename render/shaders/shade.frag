@@ -13,6 +13,10 @@ layout(location = LOCATION_DIRECTION) out vec4 out_direction;
 layout(location = LOCATION_NUMBERS) out uvec2 out_numbers;
 #endif
 
+#ifdef EXACT_CURVATURES
+uniform sampler2D curvatures;  // larger than 1e37 where only the primitive knows
+#endif
+
 #ifdef COLOR
 vec3 picture_color(Surface x, vec2 at) {
   vec3 v = ray_to_viewer(at);
@@ -52,6 +56,10 @@ void main() {
   vec2 at = gl_FragCoord.xy * pixel - 1.0;
   if (!is_mine(number)) discard;
   Surface x = surface_at(number, at);
+#ifdef EXACT_CURVATURES
+  vec2 exact = texelFetch(curvatures, where, 0).xy;
+  if (exact.x < 1e37) x.curvature = exact;
+#endif
 #ifdef COLOR
   out_color = vec4(picture_color(x, at), 1.0) - under;
 #endif

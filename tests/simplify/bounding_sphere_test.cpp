@@ -29,7 +29,8 @@ double smallest_radius(const std::vector<Sphere>& spheres) {
     for (int i = 1; i < 20000; ++i) {
       const Sphere* farthest = &spheres[0];
       for (const Sphere& s : spheres)
-        if (distance(at, s.center) + s.radius > distance(at, farthest->center) + farthest->radius) farthest = &s;
+        if (distance(at, s.center) + s.radius > distance(at, farthest->center) + farthest->radius)
+          farthest = &s;
       at += (farthest->center - at) * (0.5 / i);
       best = std::min(best, radius_around(at, spheres));
     }

@@ -16,8 +16,7 @@ PolygonMesh ball(int rings, double radius, const Vec3& center) {
   };
   add(0, 0);
   for (int i = 1; i < rings; ++i)
-    for (int k = 0; k < around; ++k)
-      add(std::numbers::pi * i / rings, 2 * std::numbers::pi * k / around);
+    for (int k = 0; k < around; ++k) add(std::numbers::pi * i / rings, 2 * std::numbers::pi * k / around);
   add(std::numbers::pi, 0);
   const auto at = [&](int i, int k) {
     if (i == 0) return 0U;
@@ -27,7 +26,8 @@ PolygonMesh ball(int rings, double radius, const Vec3& center) {
   for (int i = 0; i < rings; ++i)
     for (int k = 0; k < around; ++k) {
       if (i > 0) mesh.corners.insert(mesh.corners.end(), {at(i, k), at(i + 1, k), at(i, k + 1)});
-      if (i + 1 < rings) mesh.corners.insert(mesh.corners.end(), {at(i, k + 1), at(i + 1, k), at(i + 1, k + 1)});
+      if (i + 1 < rings)
+        mesh.corners.insert(mesh.corners.end(), {at(i, k + 1), at(i + 1, k), at(i + 1, k + 1)});
     }
   return mesh;
 }
@@ -42,14 +42,16 @@ PolygonMesh terrain(int n) {
   const auto at = [n](int i, int k) { return static_cast<std::uint32_t>(i * (n + 1) + k); };
   for (int i = 0; i < n; ++i)
     for (int k = 0; k < n; ++k)
-      mesh.corners.insert(mesh.corners.end(), {at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k), at(i + 1, k + 1), at(i, k + 1)});
+      mesh.corners.insert(mesh.corners.end(), {at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k),
+                                               at(i + 1, k + 1), at(i, k + 1)});
   return mesh;
 }
 
 PolygonMesh box() {
   PolygonMesh mesh;
   for (int i = 0; i < 8; ++i) mesh.positions.push_back({double(i & 1), double(i >> 1 & 1), double(i >> 2)});
-  mesh.corners = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+  mesh.corners = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                  2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
   return mesh;
 }
 
@@ -72,7 +74,8 @@ PolygonMesh joined(const PolygonMesh& a, const PolygonMesh& b) {
   mesh.positions = a.positions;
   mesh.positions.insert(mesh.positions.end(), b.positions.begin(), b.positions.end());
   mesh.corners = a.corners;
-  for (const std::uint32_t v : b.corners) mesh.corners.push_back(static_cast<std::uint32_t>(a.positions.size()) + v);
+  for (const std::uint32_t v : b.corners)
+    mesh.corners.push_back(static_cast<std::uint32_t>(a.positions.size()) + v);
   return mesh;
 }
 

@@ -37,7 +37,8 @@ TEST(PointNode, NormalsComeBackWithinTheirError) {
     const Vec3 back = decode_normal(encode_normal(n));
     EXPECT_NEAR(length(back), 1, 1e-12);
     worst = std::max(worst, std::atan2(length(cross(n, back)), dot(n, back)));
-    // What a bound was computed for must not move again, though on the octahedron's rim two codes are one direction.
+    // What a bound was computed for must not move again, though on the octahedron's rim two codes are one
+    // direction.
     EXPECT_LT(length(decode_normal(encode_normal(back)) - back), 1e-12);
   };
   for (int i = 0; i < 100000; ++i) test(random_direction(random));

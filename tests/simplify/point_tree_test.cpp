@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <map>
 #include <fstream>
+#include <map>
 #include <numbers>
 #include <random>
 #include <set>
@@ -57,8 +57,8 @@ void each_triangle(const PointTree& tree, F&& use) {
     for (std::size_t leaf = 0; leaf + 1 < block.leaf_starts.size(); ++leaf)
       for (std::size_t t = block.leaf_starts[leaf]; t < block.leaf_starts[leaf + 1]; ++t)
         use(b * kBlockLeaves + leaf, std::array<BlockVertex, 3>{block.vertices[block.triangles[t][0]],
-                                                               block.vertices[block.triangles[t][1]],
-                                                               block.vertices[block.triangles[t][2]]});
+                                                                block.vertices[block.triangles[t][1]],
+                                                                block.vertices[block.triangles[t][2]]});
   }
 }
 
@@ -71,7 +71,8 @@ void expect_bounds_hold(const PointTree& tree) {
         << "node " << i;
     if (node_cone(parent) == kNoCone) continue;
     ASSERT_NE(node_cone(child), kNoCone);
-    ASSERT_LE(angle_between(node_normal(parent), node_normal(child)) + std::asin(decode_cone_sine(node_cone(child))),
+    ASSERT_LE(angle_between(node_normal(parent), node_normal(child)) +
+                  std::asin(decode_cone_sine(node_cone(child))),
               std::asin(decode_cone_sine(node_cone(parent))))
         << "node " << i;
   }
@@ -79,20 +80,23 @@ void expect_bounds_hold(const PointTree& tree) {
     const EncodedNode leaf = node_at(tree, shape.leaf_node(rank));
     for (const BlockVertex& v : t)
       ASSERT_LE(distance(grid_position(v), node_center(leaf)), node_radius(leaf) * (1 + 1e-12) + 1e-12);
-    const Vec3 n = cross(grid_position(t[1]) - grid_position(t[0]), grid_position(t[2]) - grid_position(t[0]));
+    const Vec3 n =
+        cross(grid_position(t[1]) - grid_position(t[0]), grid_position(t[2]) - grid_position(t[0]));
     if (node_cone(leaf) == kNoCone || length(n) == 0) return;
     ASSERT_LE(angle_between(n, node_normal(leaf)), std::asin(decode_cone_sine(node_cone(leaf))));
   });
 }
 
 /// The mesh's triangles by their corners' places on the tree's grid.
-std::multiset<std::array<std::uint32_t, 9>> triangles_on_grid(const PolygonMesh& mesh, const PointTree& tree) {
+std::multiset<std::array<std::uint32_t, 9>> triangles_on_grid(const PolygonMesh& mesh,
+                                                              const PointTree& tree) {
   std::multiset<std::array<std::uint32_t, 9>> result;
   for (std::size_t i = 0; i < mesh.corners.size(); i += 3) {
     std::array<std::array<std::uint32_t, 3>, 3> p;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 g = rounded_to_grid(tree.info().grid.to_grid(mesh.positions[mesh.corners[i + k]]));
-      p[k] = {static_cast<std::uint32_t>(g.x), static_cast<std::uint32_t>(g.y), static_cast<std::uint32_t>(g.z)};
+      p[k] = {static_cast<std::uint32_t>(g.x), static_cast<std::uint32_t>(g.y),
+              static_cast<std::uint32_t>(g.z)};
     }
     std::rotate(p.begin(), std::min_element(p.begin(), p.end()), p.end());
     result.insert({p[0][0], p[0][1], p[0][2], p[1][0], p[1][1], p[1][2], p[2][0], p[2][1], p[2][2]});
@@ -152,14 +156,16 @@ TEST(TreeMesh, KnowsWhatIsClosed) {
   EXPECT_EQ(closed(test::terrain(5)), 0);
   EXPECT_EQ(closed(test::joined(ball, test::terrain(5))), all);
   PolygonMesh inside_out = ball;
-  for (std::size_t i = 0; i < inside_out.corners.size(); i += 3) std::swap(inside_out.corners[i], inside_out.corners[i + 1]);
+  for (std::size_t i = 0; i < inside_out.corners.size(); i += 3)
+    std::swap(inside_out.corners[i], inside_out.corners[i + 1]);
   EXPECT_EQ(closed(inside_out), 0);
   PolygonMesh holed = ball;
   holed.corners.resize(holed.corners.size() - 3);
   EXPECT_EQ(closed(holed), 0);
   PolygonMesh split;  // every triangle with vertices of its own, as in STL
   for (const std::uint32_t v : ball.corners)
-    split.corners.push_back(static_cast<std::uint32_t>(split.positions.size())), split.positions.push_back(ball.positions[v]);
+    split.corners.push_back(static_cast<std::uint32_t>(split.positions.size())),
+        split.positions.push_back(ball.positions[v]);
   EXPECT_EQ(closed(split), all);
 }
 
@@ -189,7 +195,9 @@ TEST(PointTree, AWholeQSplatTreeHoldsItsVertices) {
     const Vec3 c = node_center(leaf);
     radius[{c.x, c.y, c.z}] = node_radius(leaf);
   }
-  const auto place = [&](std::uint32_t v) { return rounded_to_grid(tree->info().grid.to_grid(mesh.positions[v])); };
+  const auto place = [&](std::uint32_t v) {
+    return rounded_to_grid(tree->info().grid.to_grid(mesh.positions[v]));
+  };
   for (std::size_t i = 0; i < mesh.corners.size(); ++i) {
     const Vec3 a = place(mesh.corners[i]), b = place(mesh.corners[i % 3 == 2 ? i - 2 : i + 1]);
     ASSERT_GE((radius.at({a.x, a.y, a.z}) + radius.at({b.x, b.y, b.z})) * (1 + 1e-12), distance(a, b));
@@ -278,7 +286,8 @@ TEST(PointTree, ColoursAndGroupsGoWithTheTriangles) {
   each_triangle(*tree, [&](std::uint64_t rank, const std::array<BlockVertex, 3>& t) {
     const bool left = tree->leaf_group(rank) == 0;
     EXPECT_EQ(t[0].color, left ? (Rgba8{255, 0, 0, 255}) : (Rgba8{196, 198, 203, 255}));
-    const double x = std::min({t[0].position[0], t[1].position[0], t[2].position[0]}) * tree->info().grid.step;
+    const double x =
+        std::min({t[0].position[0], t[1].position[0], t[2].position[0]}) * tree->info().grid.step;
     EXPECT_EQ(left, x < 0.499);
   });
 }
@@ -290,7 +299,8 @@ class PointTreeFile : public testing::Test {
   void SetUp() override { std::filesystem::create_directories(folder_); }
   void TearDown() override { std::filesystem::remove_all(folder_); }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  std::filesystem::path folder_ = std::filesystem::temp_directory_path() / ("dupin-tree-" + std::to_string(::getpid()));
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("dupin-tree-" + std::to_string(::getpid()));
 };
 
 TEST_F(PointTreeFile, ComesBackAsItWent) {
@@ -305,7 +315,8 @@ TEST_F(PointTreeFile, ComesBackAsItWent) {
   EXPECT_TRUE((*back)->verify().ok());
   EXPECT_EQ((*back)->info().source.name, "a part");
   EXPECT_EQ((*back)->info().source.scale, 25.4);
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1) << "no temporary file is left";
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1)
+      << "no temporary file is left";
   EXPECT_FALSE(write_point_tree(**tree, path("no/such/folder/x.dpt")).ok());
   EXPECT_FALSE(open_point_tree(path("missing.dpt")).ok());
   EXPECT_FALSE(open_point_tree(folder_.string()).ok());
@@ -329,7 +340,8 @@ void reseal_pages(std::string& bytes) {
   const auto paged = std::span(bytes).subspan(sizeof h, h.sections[kPages].offset - sizeof h);
   for (std::size_t i = 0; i < h.sections[kPages].size / 8; ++i) {
     const std::size_t first = i * kPointTreePage;
-    const std::uint64_t sum = page_checksum(paged.subspan(first, std::min<std::size_t>(kPointTreePage, paged.size() - first)));
+    const std::uint64_t sum =
+        page_checksum(paged.subspan(first, std::min<std::size_t>(kPointTreePage, paged.size() - first)));
     std::memcpy(bytes.data() + h.sections[kPages].offset + 8 * i, &sum, 8);
   }
 }
@@ -388,13 +400,15 @@ TEST_F(PointTreeFile, DamageUnderRightChecksumsIsSafe) {
     for (std::size_t k = 1 + random() % 3; k > 0; --k) {
       const std::size_t within = trial % 2 ? sizeof(PointTreeHeader) : bytes.size();
       const std::size_t at = random() % (within - 8);
-      const std::uint64_t words[] = {0, ~0ull, std::uint64_t{random()}, 0x7ff0000000000000u, bytes.size(), 1ull << 40};
+      const std::uint64_t words[] = {
+          0, ~0ull, std::uint64_t{random()}, 0x7ff0000000000000u, bytes.size(), 1ull << 40};
       std::memcpy(bytes.data() + at, &words[random() % 6], 1 + random() % 8);
     }
     PointTreeHeader h;
     std::memcpy(&h, bytes.data(), sizeof h);
     const ByteRange pages = h.sections[kPages];
-    if (pages.offset >= sizeof h && pages.offset <= bytes.size() && pages.size <= bytes.size() - pages.offset &&
+    if (pages.offset >= sizeof h && pages.offset <= bytes.size() &&
+        pages.size <= bytes.size() - pages.offset &&
         pages.size / 8 * kPointTreePage < pages.offset - sizeof h + kPointTreePage)
       reseal_pages(bytes);
     reseal(bytes);
