@@ -1,11 +1,7 @@
 #include "boundary.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numeric>
-
-#include "../core/parallel.h"
 
 namespace dupin {
 namespace {
@@ -13,54 +9,6 @@ namespace {
 constexpr double kTwoPi = 6.28318530717958647692;
 /// Polygon sides a flattened pcurve has for each arc of its edge.
 constexpr int kUvSidesPerArc = 8;
-
-/// Edge ends joined into vertices: end 2e is where edge e starts, 2e+1 where it stops.
-class Vertices {
- public:
-  explicit Vertices(std::size_t edges) : parent_(2 * edges) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a), b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
-std::uint32_t end_of(const Trim& trim, bool last) {
-  return 2 * trim.edge + (trim.reversed != last ? 1u : 0u);
-}
-
-Vec3 end_point(const std::vector<ArcChain>& chains, std::uint32_t end) {
-  const auto& arcs = chains[end / 2].arcs;
-  return end % 2 == 0 ? arcs.front().p0 : arcs.back().p2;
-}
-
-/// How far apart two ends may lie to be one vertex.
-double join_distance(const Part& part, const Trim& a, const Trim& b) {
-  return 4 *
-         std::max({part.edges[a.edge].tolerance, part.edges[b.edge].tolerance, part.box.diagonal() * 1e-7});
-}
-
-void join_vertices(const Part& part, const std::vector<ArcChain>& chains, Vertices& vertices) {
-  std::vector<const Trim*> real;
-  for (const Face& face : part.faces)
-    for (const Loop& loop : face.loops) {
-      real.clear();
-      for (const Trim& trim : loop)
-        if (!trim.degenerate && !chains[trim.edge].arcs.empty()) real.push_back(&trim);
-      for (std::size_t i = 0; i < real.size(); ++i) {
-        const Trim &a = *real[i], &b = *real[(i + 1) % real.size()];
-        const std::uint32_t ea = end_of(a, true), eb = end_of(b, false);
-        if (distance(end_point(chains, ea), end_point(chains, eb)) <= join_distance(part, a, b))
-          vertices.join(ea, eb);
-      }
-    }
-}
 
 bool whole_turn(const Edge& edge) {
   return std::abs(edge.t1 - edge.t0 - kTwoPi) < 1e-9;
@@ -102,78 +50,87 @@ void flatten(const Trim& trim, double t0, double t1, bool backwards, std::vector
   }
 }
 
-/// What a trim's curve in space and its pcurve on the surface are apart, as a displacement outwards along the
-/// surface.
-class Widening {
- public:
-  Widening(const Surface& surface, const Trim& trim, const Edge& edge)
-      : surface_(surface), trim_(trim), edge_(edge) {}
-
-  /// At the edge's parameter t, whose point in space is p; `along` is the loop's direction there.
-  Vec3 at(double t, const Vec3& p, const Vec3& along) const {
-    const Vec2 uv = point_at(trim_.pcurve, t);
-    const SurfaceJet jet = evaluate(surface_, uv.x, uv.y, 1);
-    const double gap = std::min(distance(jet.p, p), 2 * edge_.tolerance);
-    if (!(gap > kNoGap * (1 + length(p)))) return {};
-    // The face lies to the left of its loops in (u,v): outwards is T × n.
-    return normalized(cross(along, cross(jet.pu, jet.pv))) * gap;
-  }
-
- private:
-  static constexpr double kNoGap = 1e-11;
-  const Surface& surface_;
-  const Trim& trim_;
-  const Edge& edge_;
+/// One face's loop on its way.
+struct OpenLoop {
+  FaceLoop loop;
+  std::vector<Vec2> polygon;
+  Box2 around;                  ///< contains the pcurves, not only the polygon
+  std::vector<ArcReach> reach;  ///< of loop.arcs, in the loop's direction
+  std::vector<bool> goes_on;    ///< whether the next arc starts where this one ends
+  bool broken = false;          ///< by a seam or a point
+  bool starts_anew = false;     ///< such a break comes before the first arc
 };
 
-void append_trim(const Part& part, const Face& face, const Trim& trim, const std::vector<ArcChain>& chains,
-                 bool with_uv, FaceLoop& loop, std::vector<Vec2>& polygon,
-                 std::vector<std::array<Vec3, 3>>& outward) {
+double largest(const ArcReach& reach) {
+  return std::max({length(reach.by[0]), length(reach.by[1]), length(reach.by[2])});
+}
+
+void append_trim(const Part& part, const Face& face, const Trim& trim, const PartEdges& edges,
+                 std::span<const ArcReach> reach, bool with_uv, OpenLoop& out) {
   const Edge& edge = part.edges[trim.edge];
-  const Surface& surface = part.surfaces[face.surface];
+  const auto& arcs = edges.chains()[trim.edge].arcs;
   const bool seam = is_inner_seam(face, trim);
-  const auto& arcs = chains[trim.edge].arcs;
-  if (arcs.empty() || trim.degenerate) {
+  if (arcs.empty() || trim.degenerate || seam) {
     Box2 box;
-    if (with_uv) flatten(trim, edge.t0, edge.t1, trim.reversed, polygon, box);
+    if (with_uv)
+      for (std::size_t k = 0; k < std::max<std::size_t>(arcs.size(), 1); ++k) {
+        const std::size_t i = trim.reversed && !arcs.empty() ? arcs.size() - 1 - k : k;
+        const bool whole = arcs.empty() || trim.degenerate;
+        flatten(trim, whole ? edge.t0 : arcs[i].t0, whole ? edge.t1 : arcs[i].t1, trim.reversed, out.polygon,
+                box);
+        if (whole) break;
+      }
+    if (with_uv) out.around.add(box.lo), out.around.add(box.hi);
+    out.broken = true;
+    if (out.goes_on.empty())
+      out.starts_anew = true;
+    else
+      out.goes_on.back() = false;
     return;
   }
   for (std::size_t k = 0; k < arcs.size(); ++k) {
-    const ConicArc3& arc = arcs[trim.reversed ? arcs.size() - 1 - k : k];
-    FaceArc face_arc{trim.reversed ? reversed(arc) : arc, !edge.smooth, {}};
-    if (with_uv) flatten(trim, arc.t0, arc.t1, trim.reversed, polygon, face_arc.uv);
-    if (seam) continue;
-    loop.arcs.push_back(face_arc);
-    const ConicArc3& a = face_arc.arc;
-    const Vec3 middle = a.line ? (a.p0 + a.p2) * 0.5 : a.p1;
-    const Widening widening(surface, trim, edge);
-    outward.push_back({widening.at(trim.reversed ? a.t1 : a.t0, a.p0, middle - a.p0),
-                       widening.at((a.t0 + a.t1) / 2, point_at(*edge.curve, (a.t0 + a.t1) / 2), a.p2 - a.p0),
-                       widening.at(trim.reversed ? a.t0 : a.t1, a.p2, a.p2 - middle)});
+    const std::size_t i = trim.reversed ? arcs.size() - 1 - k : k;
+    FaceArc face_arc{trim.reversed ? reversed(arcs[i]) : arcs[i], !edge.smooth, {}, 0, 0};
+    if (with_uv) {
+      flatten(trim, arcs[i].t0, arcs[i].t1, trim.reversed, out.polygon, face_arc.uv);
+      out.around.add(face_arc.uv.lo), out.around.add(face_arc.uv.hi);
+    }
+    ArcReach r = reach.empty() ? ArcReach{} : reach[i];
+    if (trim.reversed) std::swap(r.by[0], r.by[2]);
+    face_arc.reach = largest(r);
+    face_arc.bound = arcs[i].deviation + r.own;
+    out.loop.arcs.push_back(face_arc);
+    out.reach.push_back(r);
+    out.goes_on.push_back(true);
   }
 }
 
-/// Files are exact to a tolerance: an edge may lie off both its faces, and its projections onto them apart.
-/// Each face reaches out by as much as the edge is off it, so that no crack shows however near one looks.
-/// Arcs stay joined.
-void reach_over_gaps(FaceLoop& loop, const std::vector<std::array<Vec3, 3>>& outward) {
-  const std::size_t n = loop.arcs.size();
-  if (n < 2 || outward.size() != n) return;
-  std::vector<Vec3> joint(n);  // where arc i ends
-  for (std::size_t i = 0; i < n; ++i) joint[i] = (outward[i][2] + outward[(i + 1) % n][0]) * 0.5;
+/// Moves the arcs outwards by as much as the face reaches over its edges; those that follow one another stay
+/// joined.
+void reach_over_edges(OpenLoop& open) {
+  auto& arcs = open.loop.arcs;
+  const std::size_t n = arcs.size();
+  if (std::none_of(arcs.begin(), arcs.end(), [](const FaceArc& a) { return a.reach > 0; })) return;
+  std::vector<Vec3> first(n), last(n);
+  for (std::size_t i = 0; i < n; ++i) first[i] = open.reach[i].by[0], last[i] = open.reach[i].by[2];
   for (std::size_t i = 0; i < n; ++i) {
-    ConicArc3& arc = loop.arcs[i].arc;
-    const Vec3 &first = joint[(i + n - 1) % n], &last = joint[i];
-    arc.p0 += first, arc.p2 += last;
-    // The ends may be exact and the middle off: its displacement d takes p1 along by d (1 + w) / w, less what
-    // the ends bring.
-    const Vec3 ends = (first + last) * 0.5, bow = outward[i][1] - ends;
-    if (arc.line && bow == Vec3{}) continue;
-    if (arc.line)
-      arc.line = false, arc.w = 1, arc.p1 = (arc.p0 + arc.p2) * 0.5 + bow * 2;
-    else
-      arc.p1 += ends + bow * ((1 + arc.w) / arc.w);
+    const std::size_t next = (i + 1) % n;
+    if (next == 0 && open.starts_anew) continue;
+    if (open.goes_on[i] && n > 1) first[next] = last[i] = (last[i] + first[next]) * 0.5;
   }
+  for (std::size_t i = 0; i < n; ++i) displace(arcs[i].arc, {first[i], open.reach[i].by[1], last[i]});
+}
+
+/// A whole circle or ellipse keeps its form, a little larger or smaller.
+void reach_over_edges(WholeEllipse& ellipse, const OpenLoop& open) {
+  double most = 0, side = 0;
+  for (std::size_t i = 0; i < open.reach.size(); ++i) {
+    most = std::max(most, open.loop.arcs[i].reach);
+    side += dot(open.reach[i].by[1], open.loop.arcs[i].arc.p1 - ellipse.center);
+    ellipse.bound = std::max(ellipse.bound, open.loop.arcs[i].bound);
+  }
+  const double by = side < 0 ? -most : most;
+  ellipse.x *= 1 + by / length(ellipse.x), ellipse.y *= 1 + by / length(ellipse.y);
 }
 
 /// Consecutive arcs whose ends are not one vertex get a straight piece between them: a loop is closed
@@ -196,43 +153,30 @@ void close_gaps(FaceLoop& loop) {
 
 }  // namespace
 
-std::vector<ArcChain> part_edge_chains(const Part& part, const LocalTolerance& tolerance) {
-  std::vector<ArcChain> chains(part.edges.size());
-  parallel_for(
-      part.edges.size(), [&](std::size_t i) { chains[i] = approximate_edge(part.edges[i], tolerance); }, 64);
-  Vertices vertices(part.edges.size());
-  join_vertices(part, chains, vertices);
-  for (std::uint32_t end = 0; end < 2 * chains.size(); ++end) {
-    const std::uint32_t root = vertices.find(end);
-    if (root == end || chains[end / 2].arcs.empty()) continue;
-    const Vec3 vertex = end_point(chains, root);
-    (end % 2 == 0 ? chains[end / 2].arcs.front().p0 : chains[end / 2].arcs.back().p2) = vertex;
-  }
-  return chains;
-}
-
-FaceBoundary face_boundary(const Part& part, const Face& face, const std::vector<ArcChain>& chains,
-                           bool with_uv) {
+FaceBoundary face_boundary(const Part& part, std::uint32_t face_index, const PartEdges& edges, bool with_uv) {
+  const Face& face = part.faces[face_index];
   FaceBoundary boundary;
+  std::size_t used = 0;
   for (const Loop& trims : face.loops) {
-    FaceLoop loop;
-    std::vector<Vec2> polygon;
-    std::vector<std::array<Vec3, 3>> outward;
-    bool broken_by_seam = false;
-    for (const Trim& trim : trims) {
-      append_trim(part, face, trim, chains, with_uv, loop, polygon, outward);
-      broken_by_seam |= is_inner_seam(face, trim) || trim.degenerate;
-    }
-    const bool single = trims.size() == 1 && !trims[0].degenerate;
-    if (single) loop.whole_ellipse = whole_ellipse(part.edges[trims[0].edge], loop.ellipse);
-    if (!broken_by_seam) {
-      reach_over_gaps(loop, outward);
-      close_gaps(loop);
-    }
+    OpenLoop open;
+    for (const Trim& trim : trims)
+      append_trim(part, face, trim, edges, edges.reach(face_index, used++), with_uv, open);
+    FaceLoop& loop = open.loop;
+    if (trims.size() == 1 && !open.broken && edges.moved(trims[0].edge) == 0)
+      loop.whole_ellipse = whole_ellipse(part.edges[trims[0].edge], loop.ellipse);
+    if (loop.whole_ellipse) reach_over_edges(loop.ellipse, open);
+    reach_over_edges(open);
+    if (!open.broken) close_gaps(loop);
+    for (const FaceArc& arc : loop.arcs) boundary.reach = std::max(boundary.reach, arc.reach);
     if (!loop.arcs.empty()) boundary.loops.push_back(std::move(loop));
     if (with_uv) {
-      for (Vec2 p : polygon) boundary.uv_box.add(p);
-      boundary.uv_loops.push_back(std::move(polygon));
+      // The polygon cuts corners; both boxes contain the curves.
+      boundary.uv_box.add(
+          Vec2{std::max(open.around.lo.x, face.uv_box.lo.x), std::max(open.around.lo.y, face.uv_box.lo.y)});
+      boundary.uv_box.add(
+          Vec2{std::min(open.around.hi.x, face.uv_box.hi.x), std::min(open.around.hi.y, face.uv_box.hi.y)});
+      for (Vec2 p : open.polygon) boundary.uv_box.add(p);
+      boundary.uv_loops.push_back(std::move(open.polygon));
     }
   }
   if (boundary.uv_box.empty()) boundary.uv_box = face.uv_box;
@@ -259,8 +203,11 @@ bool uv_inside(const FaceBoundary& boundary, Vec2 uv) {
   return inside;
 }
 
-UvRectangle uv_rectangle(const Part& part, const Face& face, const FaceBoundary& boundary) {
+UvRectangle uv_rectangle(const Part& part, std::uint32_t face_index, const PartEdges& edges,
+                         const FaceBoundary& boundary) {
+  const Face& face = part.faces[face_index];
   UvRectangle result;
+  std::size_t used = 0;
   const Box2 box = boundary.uv_box;
   const Vec2 eps = box.size() * 1e-7;
   if (face.loops.empty()) {
@@ -270,6 +217,7 @@ UvRectangle uv_rectangle(const Part& part, const Face& face, const FaceBoundary&
   for (const Loop& loop : face.loops)
     for (const Trim& trim : loop) {
       const Edge& edge = part.edges[trim.edge];
+      const auto reach = edges.reach(face_index, used++);
       bool on[4] = {true, true, true, true};
       const int samples = std::holds_alternative<LineOf<Vec2>>(trim.pcurve.geometry) ? 2 : 9;
       for (int i = 0; i < samples; ++i) {
@@ -282,6 +230,10 @@ UvRectangle uv_rectangle(const Part& part, const Face& face, const FaceBoundary&
       if (is_inner_seam(face, trim) || trim.degenerate) continue;
       result.side_edge[side] = true;
       result.side_drawn[side] |= !edge.smooth;
+      for (const ArcReach& r : reach) {
+        result.side_reach[side] = std::max(result.side_reach[side], largest(r) + edges.moved(trim.edge));
+        result.bound = std::max(result.bound, r.own);
+      }
     }
   result.rectangle = true;
   return result;

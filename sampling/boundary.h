@@ -6,22 +6,22 @@
 
 #include "../nurbs/model.h"
 #include "conic_arc.h"
+#include "part_edges.h"
 
 namespace dupin {
-
-/// The chains of a part's edges, by edge. Ends that meet in a vertex are the same point, bit for bit: the
-/// vertex's.
-std::vector<ArcChain> part_edge_chains(const Part& part, const LocalTolerance& tolerance);
 
 struct FaceArc {
   ConicArc3 arc;
   bool feature = false;  ///< drawn as an edge line
   Box2 uv;               ///< contains the pcurve over the arc
+  double reach = 0;      ///< how far it was moved outwards, over the edge
+  double bound = 0;  ///< how far it may be from the face's own edge; not counted is what the file's is off
 };
 /// A loop that is one whole circle or ellipse: center + cos t·x + sin t·y.
 struct WholeEllipse {
   Vec3 center, x, y;
   bool feature = false;
+  double bound = 0;  ///< as of an arc
 };
 struct FaceLoop {
   std::vector<FaceArc>
@@ -34,11 +34,11 @@ struct FaceBoundary {
   std::vector<FaceLoop> loops;              ///< those with arcs
   std::vector<std::vector<Vec2>> uv_loops;  ///< closed polygons of the pcurves; only when asked for
   Box2 uv_box;                              ///< of the pcurves, or the face's own where it has no loops
+  double reach = 0;                         ///< the largest of its arcs
 };
 
 /// `with_uv`: flatten the pcurves too (uv_loops, FaceArc::uv).
-FaceBoundary face_boundary(const Part& part, const Face& face, const std::vector<ArcChain>& chains,
-                           bool with_uv);
+FaceBoundary face_boundary(const Part& part, std::uint32_t face, const PartEdges& edges, bool with_uv);
 
 /// A trim whose edge bounds the face twice: the surface goes on across it. (A closed surface's seam may also
 /// bound a face on one side only: then it is an edge like any other.)
@@ -54,8 +54,11 @@ struct UvRectangle {
   bool rectangle = false;
   bool side_drawn[4] = {false, false, false, false};
   bool side_edge[4] = {false, false, false, false};
+  double side_reach[4] = {0, 0, 0, 0};  ///< how far the face reaches over that side, a length
+  double bound = 0;                     ///< the largest of it that is not due to the file's edges being off
 };
-UvRectangle uv_rectangle(const Part& part, const Face& face, const FaceBoundary& boundary);
+UvRectangle uv_rectangle(const Part& part, std::uint32_t face, const PartEdges& edges,
+                         const FaceBoundary& boundary);
 
 }  // namespace dupin
 

@@ -107,6 +107,7 @@ class CurvedQuadric {
   QuadricDp dp_at(Vec2 uv) const {
     QuadricDp dp = quadric_dp_at(implicit_, point_at(in_.surface, uv.x, uv.y), inward(in_.surface, uv));
     dp.exact = true;
+    dp.bound = in_.rectangle.bound;
     dp.face = in_.face_index;
     dp.cell = in_.uv_box;
     const Vec3 outward = surface_normal(in_.surface, uv) * (in_.outward_is_normal ? 1.0 : -1.0);
@@ -156,7 +157,7 @@ class CurvedQuadric {
     const Sphere& sphere = std::get<Sphere>(in_.surface.geometry);
     const double r = sphere.radius, v0 = in_.uv_box.lo.y, v1 = in_.uv_box.hi.y;
     QuadricDp dp = quadric_dp_at(implicit_, sphere.frame.origin + sphere.frame.z * r, -sphere.frame.z);
-    dp.exact = true, dp.face = in_.face_index, dp.cell = in_.uv_box;
+    dp.exact = true, dp.bound = in_.rectangle.bound, dp.face = in_.face_index, dp.cell = in_.uv_box;
     const Vec2 mid = in_.uv_box.center();
     const bool normal_outward = dot(surface_normal(in_.surface, mid), radial(sphere.frame, mid.x)) > 0;
     dp.flipped = normal_outward == in_.outward_is_normal;
@@ -209,7 +210,7 @@ class CurvedQuadric {
     const Vec3 axes[3] = {dp.u, dp.v, dp.n()};
     Extent e[3];
     for (int i = 0; i < 3; ++i) e[i] = extent_along(in_.surface, uv, dp.origin, axes[i]);
-    const double margin = 1e-5 * std::max(e[0].hi - e[0].lo, e[1].hi - e[1].lo);
+    const double margin = 1e-5 * std::max(e[0].hi - e[0].lo, e[1].hi - e[1].lo) + 2 * in_.boundary.reach;
     set_footprint(dp, {e[0].lo - margin, e[0].hi + margin}, {e[1].lo - margin, e[1].hi + margin});
     dp.z_lo = e[2].lo - margin, dp.z_hi = e[2].hi + margin;
     dp.cell = uv;
@@ -217,7 +218,7 @@ class CurvedQuadric {
     ChartPieces pieces;
     for (const FaceLoop& loop : in_.boundary.loops)
       for (const FaceArc& arc : loop.arcs)
-        if (chart.add(arc, pieces)) dp.bound = std::max(dp.bound, arc.arc.deviation);
+        if (chart.add(arc, pieces)) dp.bound = std::max(dp.bound, arc.bound);
     const auto [reference, state] = reference_in(uv, chart, pieces);
     if (pieces.count() <= kMaxPieces) narrow_to_sector(dp, uv);
     return emit_exact_dp(dp, pieces, reference, state, out_);
@@ -308,7 +309,7 @@ class CurvedQuadric {
   int make_cube_chart(const Sphere& sphere, const Vec3& axis) {
     const double r = sphere.radius, wide = r * (std::sqrt(0.5) + 1e-6);
     QuadricDp dp = quadric_dp_at(implicit_, sphere.frame.origin + axis * r, -axis);
-    dp.exact = true, dp.face = in_.face_index, dp.cell = in_.uv_box;
+    dp.exact = true, dp.bound = in_.rectangle.bound, dp.face = in_.face_index, dp.cell = in_.uv_box;
     const Vec2 mid = in_.uv_box.center();
     const bool normal_outward =
         dot(surface_normal(in_.surface, mid), point_at(in_.surface, mid.x, mid.y) - sphere.frame.origin) > 0;
@@ -320,7 +321,7 @@ class CurvedQuadric {
     ChartPieces pieces;
     for (const FaceLoop& loop : in_.boundary.loops)
       for (const FaceArc& arc : loop.arcs)
-        if (chart.add(arc, pieces)) dp.bound = std::max(dp.bound, arc.arc.deviation);
+        if (chart.add(arc, pieces)) dp.bound = std::max(dp.bound, arc.bound);
     Vec2 best{};
     double most = -1;
     for (double fy : {0.03, 0.41, -0.37, 0.2, -0.22})

@@ -13,8 +13,9 @@ namespace {
 
 /// Halvings of one Bézier patch; a cell that is still too wrong then is reported by its bounds.
 constexpr int kMaxDepth = 36;
-/// Cells with a trim are drawn finer than the tolerance asks, in position: two faces' sheets meet there.
-constexpr double kTrimTolerance = 0.1;
+
+/// What cells beside an edge may be off, as a part of the tolerance.
+constexpr double kBesideEdges = 0.9;
 
 /// A cell smaller than this part of the tolerance is not worth a fit: it is drawn flat.
 constexpr double kSpeck = 0.5;
@@ -104,9 +105,11 @@ class PatchFace {
     const Box3 box = poles_box(cell.patch);
     const double allowed = in_.tolerance.at(box);
     if (std::isinf(allowed)) return;
-    const double tolerance = allowed * (cell.known ? 1 : kTrimTolerance);
+    // Beside what it reaches over edges, a cell's error comes at a right angle.
+    const double tolerance = allowed * (!cell.known ? kTrimTolerance : cell.arcs.empty() ? 1 : kBesideEdges);
     allowed_ = allowed;
-    const bool speck = box.diagonal() <= allowed || cell.depth >= kMaxDepth;
+    const bool speck =
+        box.diagonal() <= allowed * (cell.arcs.empty() ? 1 : kBesideEdges) || cell.depth >= kMaxDepth;
     if (box.diagonal() <= kSpeck * allowed) return emit_speck(cell, uv, box, {});
     CellFit fit =
         fitter_.fit(cell.patch, tolerance - fitted_position_, in_.normal_tolerance - fitted_normal_);
@@ -205,7 +208,9 @@ class PatchFace {
       fit.margin_needed[k] = 0;
       if (point)
         overlap_width = 0;
-      else if (!on_border(k, uv)) {
+      else if (on_border(k, uv)) {
+        overlap_width += 1.5 * in_.boundary.reach;
+      } else {
         double own = 0;
         for (Vec2 p : fit.border[k]) own = std::min(own, dot(p - a, out));
         fit.margin_needed[k] = fit.margins.side[k] * (bulge + wanted - own) /
@@ -239,11 +244,11 @@ class PatchFace {
   bool emit_region(const Cell& cell, const Box2& uv, QuadricDp dp) {
     ChartPieces pieces;
     ChartProjector chart(dp);
-    double deviation = 0;
+    double off = 0;
     for (const FaceArc* arc : cell.arcs)
-      if (chart.add(*arc, pieces)) deviation = std::max(deviation, arc->arc.deviation);
+      if (chart.add(*arc, pieces)) off = std::max(off, arc->bound);
     // Where the face ends, by as much as its edge is off, points may lie beyond the surface itself.
-    dp.bound = std::hypot(dp.bound, deviation);
+    dp.bound = std::hypot(dp.bound, off);
     if (cell.known && pieces.empty()) return count(dp, {}, {}, cell.inside);
     if (cell.known) return count(dp, pieces, chart.to_chart(point_at(cell.patch, 0.5, 0.5)), cell.inside);
     if (pieces.count() > kMaxPieces && cell.depth < kMaxDepth / 2) return false;

@@ -203,12 +203,15 @@ int make_plane_face(const QuadricFaceInput& in, PartDps& out) {
   ChartProjector chart(dp);
   ChartPieces pieces;
   for (std::size_t i = 0; i < loops.size(); ++i) {
-    if (i == outer && outer_is_footprint) continue;
+    if (i == outer && outer_is_footprint) {
+      for (const FaceArc& arc : loops[i].arcs) dp.bound = std::max(dp.bound, arc.bound);
+      continue;
+    }
     if (loops[i].whole_ellipse)
-      chart.add(loops[i].ellipse, pieces);
+      chart.add(loops[i].ellipse, pieces), dp.bound = std::max(dp.bound, loops[i].ellipse.bound);
     else
       for (const FaceArc& arc : loops[i].arcs)
-        if (chart.add(arc, pieces)) dp.bound = std::max(dp.bound, arc.arc.deviation);
+        if (chart.add(arc, pieces)) dp.bound = std::max(dp.bound, arc.bound);
   }
   // Beyond the outer loop, where nothing is inside; without that loop's pieces everything there is.
   const Vec2 reference = box.lo - box.size() * 0.0137;

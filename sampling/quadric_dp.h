@@ -81,8 +81,9 @@ struct QuadricDp {
   bool reference_inside = true;
   /// Certified: no point drawn is farther than `bound` (model units) from the face's surface, and no drawn
   /// normal turned by more than `normal_bound` (radians) from the surface's there. docs/mathematics.md,
-  /// "Certificates". Where the file's own edge lies off the surface the face reaches outwards as far, at most
-  /// twice the edge's tolerance: that is not counted.
+  /// "Certificates". Where the file's own edge lies off the surface the face reaches outwards for it, at most
+  /// eight times the edge's tolerance: that is not counted in `bound`, nor in `normal_bound` what lies beyond
+  /// the face's edges.
   double bound = 0, normal_bound = 0;
   bool sampled_bound =
       false;  ///< on an offset surface the bounds hold a sampled part: estimated, not certified

@@ -14,9 +14,6 @@
 namespace dupin {
 namespace {
 
-/// Edges are approximated to this part of the tolerance that holds for faces: both faces of an edge follow
-/// the same chain, and what differs from the file's curve is the picture's outline.
-constexpr double kEdgeTolerance = 0.02;
 constexpr double kTwoPi = 6.28318530717958647692;
 
 /// One face's DPs on their own, so that faces can be made in any order.
@@ -53,6 +50,22 @@ bool inside_with_period(const FaceBoundary& boundary, Vec2 uv) {
   for (; u <= box.hi.x + 1e-9; u += kTwoPi)
     if (uv_inside(boundary, {u, uv.y})) return true;
   return false;
+}
+
+/// A rectangle of parameters with what the face reaches over its edges.
+Box2 grown_over_edges(const Surface& surface, Box2 box, const UvRectangle& rectangle) {
+  if (!rectangle.rectangle) return box;
+  const double* reach = rectangle.side_reach;
+  double around = 1, along = 1;  // lengths of a unit of u and v
+  if (const auto* c = std::get_if<Cylinder>(&surface.geometry)) around = c->radius;
+  if (const auto* c = std::get_if<Cone>(&surface.geometry))
+    around = std::abs(c->radius + box.center().y * std::sin(c->half_angle));
+  if (const auto* s = std::get_if<Sphere>(&surface.geometry))
+    along = s->radius, around = s->radius * std::cos(box.center().y);
+  if (!(around > 0)) return box;
+  box.lo.x -= reach[0] / around, box.hi.x += reach[1] / around;
+  box.lo.y -= reach[2] / along, box.hi.y += reach[3] / along;
+  return box;
 }
 
 /// A recognised surface's parameters for a region of the spline that it was recognised in, by a grid of
@@ -102,15 +115,16 @@ class Recast {
 class PartSampler {
  public:
   PartSampler(const Model& model, std::uint32_t part, const SamplingOptions& options)
-      : part_(model.parts[part]), options_(options), field_(options, model, part) {
-    chains_ = part_edge_chains(part_, [this](const Box3& box) { return field_.at(box) * kEdgeTolerance; });
-  }
+      : part_(model.parts[part]),
+        options_(options),
+        field_(options, model, part),
+        edges_(part_, [this](const Box3& box) { return field_.at(box); }) {}
 
   void sample_face(std::uint32_t index, FaceDps& out) const {
     const Face& face = part_.faces[index];
     const Surface& surface = part_.surfaces[face.surface];
     if (is_quadric(surface)) return sample_quadric(index, face, surface, out);
-    const FaceBoundary boundary = face_boundary(part_, face, chains_, true);
+    const FaceBoundary boundary = face_boundary(part_, index, edges_, true);
     if (face.recognized && is_quadric(face.recognized->surface))
       return sample_recognized(index, face, boundary, out);
     const PatchFaceInput in{part_, face, index, boundary, field_, options_.normal_tolerance};
@@ -157,7 +171,7 @@ class PartSampler {
 
   void sample_quadric(std::uint32_t index, const Face& face, const Surface& surface, FaceDps& out) const {
     const bool plane = std::holds_alternative<Plane>(surface.geometry);
-    const FaceBoundary boundary = face_boundary(part_, face, chains_, !plane);
+    const FaceBoundary boundary = face_boundary(part_, index, edges_, !plane);
     auto inside = [&](const Vec3& p) { return inside_with_period(boundary, parameters_on(surface, p)); };
     QuadricFaceInput in{part_, face, index, surface, boundary, boundary.uv_box, {}, inside, !face.reversed};
     if (plane) {
@@ -167,14 +181,15 @@ class PartSampler {
         make_plane_face(in, out.dps);
       return;
     }
-    in.rectangle = uv_rectangle(part_, face, boundary);
+    in.rectangle = uv_rectangle(part_, index, edges_, boundary);
+    in.uv_box = grown_over_edges(surface, in.uv_box, in.rectangle);
     make_curved_quadric_face(in, out.dps);
   }
 
   const Part& part_;
   const SamplingOptions& options_;
   const ToleranceField field_;
-  std::vector<ArcChain> chains_;
+  const PartEdges edges_;
 };
 
 }  // namespace

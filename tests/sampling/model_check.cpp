@@ -158,7 +158,7 @@ void check_bounds(const Part& part, const PartDps& dps, const Outline& outline,
   const double rounding = 1e-9 * part.box.diagonal();
   double edge_reach = 0;
   for (const Loop& loop : face.loops)
-    for (const Trim& trim : loop) edge_reach = std::max(edge_reach, 2 * part.edges[trim.edge].tolerance);
+    for (const Trim& trim : loop) edge_reach = std::max(edge_reach, 8 * part.edges[trim.edge].tolerance);
   const std::size_t stride =
       std::max<std::size_t>(1, mine.size() / static_cast<std::size_t>(options.most_dps_per_face));
   for (std::size_t m = 0; m < mine.size(); m += stride) {
@@ -202,17 +202,22 @@ void check_bounds(const Part& part, const PartDps& dps, const Outline& outline,
             recognized ? invert(drawn_surface, p, {3.14159265358979, 0}) : std::optional<Vec2>(uv);
         const SurfaceJet jet = evaluate(drawn_surface, there->x, there->y, 1);
         // At its border a face may reach over what the file's own edges are off (QuadricDp::bound).
-        const double reach = inside_polygons(outline, uv) ? 0 : edge_reach;
+        const bool beyond = !inside_polygons(outline, uv);
+        const double reach = beyond ? edge_reach : 0;
+        // The nearest point may be one of an edge, where descent in the parameters gets stuck at the domain's
+        // end.
+        const double off =
+            beyond ? std::min(distance(p, jet.p), distance_to_outline(outline, p)) : distance(p, jet.p);
         report.worst_position =
-            std::max(report.worst_position, (distance(p, jet.p) - rounding - reach) / (dp.bound + rounding));
+            std::max(report.worst_position, (off - rounding - reach) / (dp.bound + rounding));
         const Vec3 n = normalized(cross(jet.pu, jet.pv)) * (face.reversed ? -1.0 : 1.0);
         const Vec3 g = drawn_normal(dp, l);
         const Vec3 drawn = normalized(dp.u * g.x + dp.v * g.y + dp.n() * g.z) * (dp.flipped ? -1.0 : 1.0);
-        if (!dp.speck && length(n) > 0.5) {
+        if (!dp.speck && !beyond && length(n) > 0.5) {
           const double angle = std::atan2(length(cross(n, drawn)), dot(n, drawn));
           report.worst_normal = std::max(report.worst_normal, angle / (dp.normal_bound + 1e-6));
         }
-        if (!inside_polygons(outline, uv) && distance_to_outline(outline, p) > options.margin) {
+        if (!inside_polygons(outline, uv) && distance_to_outline(outline, p) > options.margin + edge_reach) {
           // A period away it may be inside.
           const double pu = period_u(surface), pv = period_v(surface);
           bool elsewhere = false;
