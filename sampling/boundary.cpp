@@ -105,20 +105,63 @@ void append_trim(const Part& part, const Face& face, const Trim& trim, const Par
   }
 }
 
+/// The direction in which an arc starts or stops.
+Vec3 end_tangent(const ConicArc3& arc, bool last) {
+  if (arc.line) return normalized(arc.p2 - arc.p0);
+  return normalized(last ? arc.p2 - arc.p1 : arc.p1 - arc.p0);
+}
+
+/// Where two arcs meet that are moved outwards by `a` and `b` there, s and t being their directions: both are
+/// drawn on (or cut short) along themselves, the first by `on`, the second by `back` from its start, to the
+/// displacement `at`.
+struct Mitre {
+  Vec3 at;
+  double on = 0, back = 0;
+};
+Mitre mitre(const Vec3& a, const Vec3& s, const Vec3& b, const Vec3& t) {
+  constexpr double kLeastSine = 0.2, kMostTimes = 4;
+  const double c = dot(s, t), s2 = 1 - c * c;
+  if (!(s2 > kLeastSine * kLeastSine)) return {(a + b) * 0.5};
+  // a + α s = b + β t in the least squares' sense.
+  const Vec3 d = b - a;
+  const double alpha = (dot(d, s) - c * dot(d, t)) / s2, beta = (c * dot(d, s) - dot(d, t)) / s2;
+  const Vec3 meeting = (a + s * alpha + b + t * beta) * 0.5;
+  const double most = kMostTimes * std::max(length(a), length(b));
+  return length(meeting) <= most ? Mitre{meeting, alpha, beta} : Mitre{(a + b) * 0.5};
+}
+
+/// The arc from `from` after its start to `on` beyond its end, lengths that are small beside its own.
+ConicArc3 drawn_on(const ConicArc3& arc, double from, double on) {
+  if (arc.line || (from == 0 && on == 0)) return arc;
+  const double first = 2 * arc.w * distance(arc.p0, arc.p1), last = 2 * arc.w * distance(arc.p1, arc.p2);
+  if (!(std::abs(from) < 0.2 * first && std::abs(on) < 0.2 * last)) return arc;
+  ConicArc3 out = sub_arc(arc, from / first, 1 + on / last);
+  out.deviation = arc.deviation;
+  return out;
+}
+
 /// Moves the arcs outwards by as much as the face reaches over its edges; those that follow one another stay
 /// joined.
 void reach_over_edges(OpenLoop& open) {
   auto& arcs = open.loop.arcs;
   const std::size_t n = arcs.size();
   if (std::none_of(arcs.begin(), arcs.end(), [](const FaceArc& a) { return a.reach > 0; })) return;
-  std::vector<Vec3> first(n), last(n);
-  for (std::size_t i = 0; i < n; ++i) first[i] = open.reach[i].by[0], last[i] = open.reach[i].by[2];
+  std::vector<Vec3> joint(n);  // where arc i's end goes, if another starts there
+  std::vector<double> from(n, 0), on(n, 0);
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t next = (i + 1) % n;
-    if (next == 0 && open.starts_anew) continue;
-    if (open.goes_on[i] && n > 1) first[next] = last[i] = (last[i] + first[next]) * 0.5;
+    open.goes_on[i] = open.goes_on[i] && n > 1 && !(next == 0 && open.starts_anew);
+    if (!open.goes_on[i]) continue;
+    const Mitre m = mitre(open.reach[i].by[2], end_tangent(arcs[i].arc, true), open.reach[next].by[0],
+                          end_tangent(arcs[next].arc, false));
+    joint[i] = arcs[i].arc.p2 + m.at, on[i] = m.on, from[next] = m.back;
   }
-  for (std::size_t i = 0; i < n; ++i) displace(arcs[i].arc, {first[i], open.reach[i].by[1], last[i]});
+  for (std::size_t i = 0; i < n; ++i) {
+    displace(arcs[i].arc, open.reach[i].by);
+    arcs[i].arc = drawn_on(arcs[i].arc, from[i], on[i]);
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    if (open.goes_on[i]) arcs[i].arc.p2 = arcs[(i + 1) % n].arc.p0 = joint[i];
 }
 
 /// A whole circle or ellipse keeps its form, a little larger or smaller.

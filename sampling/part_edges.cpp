@@ -9,6 +9,8 @@
 namespace dupin {
 namespace {
 
+using Side = EdgeSide;
+
 /// Gaps below this part of the tolerance are not looked at.
 constexpr double kNoGap = 2e-3;
 /// Below this sine two faces are taken to go on smoothly, and reach this many times what they are off.
@@ -50,12 +52,6 @@ double join_distance(const Part& part, const Trim& a, const Trim& b) {
          std::max({part.edges[a.edge].tolerance, part.edges[b.edge].tolerance, part.box.diagonal() * 1e-7});
 }
 
-/// A face at a point of one of its edges.
-struct Side {
-  Vec3 p, n;     ///< of the surface; n is Su × Sv, unit, or zero at a pole
-  double off = 0;  ///< what its sheet may be off
-};
-
 /// What a point of an edge's chain is moved by, for all faces.
 Vec3 to_common_point(const Vec3& p, const Side& a, const Side& b, double most) {
   const double c = dot(a.n, b.n), s2 = 1 - c * c;
@@ -65,8 +61,9 @@ Vec3 to_common_point(const Vec3& p, const Side& a, const Side& b, double most) {
   return length(d) <= most ? d : Vec3{};
 }
 
-/// How far faces with these normals and unit outward directions reach for their sheets to overlap, as a multiple of
-/// what both together may be off. Where the other is not known they are taken to meet at a right angle.
+/// How far faces with these normals and unit outward directions reach for their sheets to overlap, as a
+/// multiple of what both together may be off. Where the other is not known they are taken to meet at a right
+/// angle.
 double reach_for(const Side& a, const Side& b, const Vec3& out_a, const Vec3& out_b) {
   if (b.n == Vec3{}) return 1;
   const double sine = length(cross(a.n, b.n));
@@ -93,7 +90,7 @@ bool is_drawn_exactly(const Part& part, const Face& face) {
 }
 
 PartEdges::PartEdges(const Part& part, const LocalTolerance& tolerance)
-    : part_(part), chains_(part.edges.size()), moved_(part.edges.size()) {
+    : part_(part), chains_(part.edges.size()), moved_(part.edges.size()), planes_(part.edges.size()) {
   find_uses();
   const LocalTolerance of_edges = [&](const Box3& box) { return tolerance(box) * kEdgeTolerance; };
   parallel_for(
@@ -127,6 +124,30 @@ void PartEdges::find_uses() {
   reach_.resize(trims);
 }
 
+void PartEdges::note_planes(std::uint32_t end, const EdgeSide& a, const EdgeSide& b) {
+  auto& at_ends = planes_[end / 2];
+  if (!at_ends) at_ends = std::make_unique<std::array<EndPlanes, 2>>();
+  (*at_ends)[end % 2].sides[0] = a, (*at_ends)[end % 2].sides[1] = b;
+}
+
+/// The point nearest to `p` on the tangent planes of all faces that meet there, in the least squares' sense.
+Vec3 PartEdges::meeting_point(const std::vector<std::uint32_t>& ends, const Vec3& p, double most) const {
+  Mat3 m{{}, {}, {}};
+  Vec3 r;
+  for (std::uint32_t end : ends) {
+    if (!planes_[end / 2]) continue;
+    for (const EdgeSide& s : (*planes_[end / 2])[end % 2].sides) {
+      m.x += s.n * s.n.x, m.y += s.n * s.n.y, m.z += s.n * s.n.z;
+      r += s.n * dot(s.n, s.p - p);
+    }
+  }
+  const double ridge = 1e-3 * (m.x.x + m.y.y + m.z.z);
+  if (!(ridge > 0)) return p;
+  m.x.x += ridge, m.y.y += ridge, m.z.z += ridge;
+  const Vec3 by = inverse(m) * r;
+  return length(by) <= most ? p + by : p;
+}
+
 void PartEdges::join_vertices() {
   Vertices vertices(part_.edges.size());
   std::vector<const Trim*> real;
@@ -142,11 +163,20 @@ void PartEdges::join_vertices() {
           vertices.join(ea, eb);
       }
     }
+  std::vector<std::vector<std::uint32_t>> joined;  // those of more than one end, by their lowest
+  std::vector<std::uint32_t> set(2 * chains_.size(), 0);
   for (std::uint32_t end = 0; end < 2 * chains_.size(); ++end) {
     const std::uint32_t root = vertices.find(end);
     if (root == end || chains_[end / 2].arcs.empty()) continue;
-    const Vec3 vertex = end_point(chains_, root);
-    (end % 2 == 0 ? chains_[end / 2].arcs.front().p0 : chains_[end / 2].arcs.back().p2) = vertex;
+    if (set[root] == 0) joined.push_back({root}), set[root] = static_cast<std::uint32_t>(joined.size());
+    joined[set[root] - 1].push_back(end);
+  }
+  for (const auto& ends : joined) {
+    double most = 0;
+    for (std::uint32_t end : ends) most = std::max(most, 4 * part_.edges[end / 2].tolerance);
+    const Vec3 vertex = meeting_point(ends, end_point(chains_, ends[0]), most);
+    for (std::uint32_t end : ends)
+      (end % 2 == 0 ? chains_[end / 2].arcs.front().p0 : chains_[end / 2].arcs.back().p2) = vertex;
   }
 }
 
@@ -166,16 +196,19 @@ class Closing {
     Vec3 common;
     Vec3 outward[2];
     double own = 0;
+    Side side[2];
+    bool gap = false;
   };
   /// At the edge's parameter t; `p` is the chain's point there, `along` the edge's direction.
   Result at(double t, const Vec3& p, const Vec3& along, double chain_off, double no_gap) const {
-    Side side[2];
+    Result result;
+    Side* side = result.side;
     for (int k = 0; k < count_; ++k) side[k] = side_at(k, t);
     if (count_ == 1) side[1] = {p, {}, side[0].off};
-    Result result;
     const double most = kMostTolerances * edge_.tolerance;
     double gap = std::min(distance(side[0].p, p), most) + std::min(distance(side[1].p, p), most);
     if (gap <= no_gap) gap = 0;
+    result.gap = gap > 0;
     if (gap > 0 && count_ == 2) {
       result.common = to_common_point(p, side[0], side[1], 4 * most);
       if (result.common != Vec3{}) gap = 0;
@@ -252,6 +285,8 @@ void PartEdges::close_between(std::uint32_t edge, std::span<const Use> used,
       const Closing::Result r = closing.at(at[i], points[i], along[i], arc.deviation, no_gap);
       common[3 * k + i] = r.common;
       moves |= r.common != Vec3{};
+      const bool first = k == 0 && i == 0, last = k + 1 == arcs.size() && i == 2;
+      if (r.gap && (first || last)) note_planes(2 * edge + (last ? 1 : 0), r.side[0], r.side[1]);
       for (std::size_t u = 0; u < used.size(); ++u) {
         ArcReach& reach = reach_[used[u].trim][k];
         reach.by[static_cast<std::size_t>(i)] = r.outward[u];

@@ -9,6 +9,7 @@
 #define DUPIN_SAMPLING_PART_EDGES_H
 
 #include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -32,6 +33,12 @@ void displace(ConicArc3& arc, const std::array<Vec3, 3>& by);
 /// A plane, cylinder, cone or sphere (or recognised as one): drawn as the surface itself.
 bool is_drawn_exactly(const Part& part, const Face& face);
 
+/// A face at a point of one of its edges.
+struct EdgeSide {
+  Vec3 p, n;       ///< of the surface; n is Su × Sv, unit, or zero at a pole
+  double off = 0;  ///< what its sheet may be off
+};
+
 class PartEdges {
  public:
   /// `tolerance`: that of faces.
@@ -50,8 +57,14 @@ class PartEdges {
     std::uint32_t trim;  ///< over all faces
     const Trim* as;
   };
+  /// The faces of an edge at one of its ends, where the file's edge is off them.
+  struct EndPlanes {
+    EdgeSide sides[2];
+  };
   void find_uses();
   void join_vertices();
+  void note_planes(std::uint32_t end, const EdgeSide& a, const EdgeSide& b);
+  Vec3 meeting_point(const std::vector<std::uint32_t>& ends, const Vec3& p, double most) const;
   void close_edge(std::uint32_t edge, const LocalTolerance& tolerance);
   void close_between(std::uint32_t edge, std::span<const Use> used, const LocalTolerance& tolerance);
   std::span<const Use> uses(std::uint32_t edge) const {
@@ -61,10 +74,11 @@ class PartEdges {
   const Part& part_;
   std::vector<ArcChain> chains_;
   std::vector<double> moved_;
-  std::vector<std::uint32_t> first_trim_;     ///< by face
-  std::vector<Use> uses_;                     ///< by edge, from
-  std::vector<std::uint32_t> first_use_;      ///< to the next edge's
-  std::vector<std::vector<ArcReach>> reach_;  ///< by trim
+  std::vector<std::unique_ptr<std::array<EndPlanes, 2>>> planes_;  ///< by edge, where there are any
+  std::vector<std::uint32_t> first_trim_;                          ///< by face
+  std::vector<Use> uses_;                                          ///< by edge, from
+  std::vector<std::uint32_t> first_use_;                           ///< to the next edge's
+  std::vector<std::vector<ArcReach>> reach_;                       ///< by trim
 };
 
 }  // namespace dupin

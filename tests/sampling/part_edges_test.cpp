@@ -114,7 +114,7 @@ void expect_no_gaps(const std::string& path, double tolerance_of_diagonal) {
   options.normal_tolerance = 0.5 * 3.14159265358979323846 / 180;
   Result<DpScene> scene = sample_quadric_dps(*read, options);
   ASSERT_TRUE(scene.ok());
-  std::mt19937 rng(7);
+  std::mt19937 rng(11);
   std::uniform_real_distribution<double> unit(-1, 1);
   constexpr double kLeastSine = 0.2;
   int lines = 0, through = 0;
@@ -127,6 +127,10 @@ void expect_no_gaps(const std::string& path, double tolerance_of_diagonal) {
     for (std::size_t e = 0; e < part.edges.size(); ++e) {
       const Edge& edge = part.edges[e];
       if (uses[e].size() != 2 || !edge.curve || uses[e][0].face == uses[e][1].face) continue;
+      // Beside an edge shorter than the lines are off it a third face may be missed.
+      if (distance(point_at(*edge.curve, edge.t0), point_at(*edge.curve, 0.5 * (edge.t0 + edge.t1))) <
+          options.tolerance)
+        continue;
       for (int i = 0; i < 40; ++i) {
         const double t = edge.t0 + (edge.t1 - edge.t0) * (0.5 + 0.48 * unit(rng));
         const Vec3 d = normalized(Vec3{unit(rng), unit(rng), unit(rng)});
@@ -134,8 +138,7 @@ void expect_no_gaps(const std::string& path, double tolerance_of_diagonal) {
                      b = dot(d, outward_normal(part, uses[e][1], t));
         if (!(a * b > 0 && std::min(std::abs(a), std::abs(b)) > kLeastSine)) continue;
         const double near = 0.1 * options.tolerance;
-        const Vec3 o =
-            point_at(*edge.curve, t) + Vec3{unit(rng), unit(rng), unit(rng)} * (near * unit(rng));
+        const Vec3 o = point_at(*edge.curve, t) + Vec3{unit(rng), unit(rng), unit(rng)} * (near * unit(rng));
         ++lines;
         bool hit = false;
         for (const QuadricDp& dp : scene->parts[p].dps)
