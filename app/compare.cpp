@@ -23,6 +23,7 @@ struct PictureCompareOptions {
   CompareOptions compare;
   std::string a, b, diff;
   bool json = false;
+  std::size_t pixels = 0;
 };
 
 /// JSON has no infinity: equal pictures have a PSNR of null.
@@ -84,6 +85,22 @@ void print_table(const PictureDifference& d) {
   print("normals", "degrees", g.normal_degrees);
 }
 
+Json to_json(const PixelDifference& d) {
+  return {{"kind", kDifferenceNames[static_cast<int>(d.kind)]},
+          {"x", d.x},
+          {"y", d.y},
+          {"depth", {finite(d.depth_a), finite(d.depth_b)}},
+          {"depth_px", finite(d.depth_px)},
+          {"normal_degrees", d.normal_degrees},
+          {"face", {d.face_a, d.face_b}}};
+}
+
+void print(const PixelDifference& d) {
+  std::printf("%-12s pixel %d,%d: depths %.7g and %.7g, %.4g pixels; normals %.4g degrees; faces %u and %u\n",
+              kDifferenceNames[static_cast<int>(d.kind)], d.x, d.y, d.depth_a, d.depth_b, d.depth_px,
+              d.normal_degrees, d.face_a, d.face_b);
+}
+
 Status write_diff(OutputFile& output, const Image& a, const Image& b, const CompareOptions& options) {
   const Result<Image8> picture = difference_picture(a, b, options);
   if (!picture.ok()) return picture.status();
@@ -105,10 +122,20 @@ int run(const PictureCompareOptions& options) {
   if (!options.diff.empty())
     if (const Status status = write_diff(diff, *a, *b, options.compare); !status.ok())
       return session.fail(status);
-  if (options.json)
-    std::printf("%s\n", to_json(*difference).dump(2).c_str());
-  else
+  std::vector<PixelDifference> pixels;
+  if (options.pixels > 0) {
+    Result<std::vector<PixelDifference>> worst = worst_pixels(*a, *b, options.compare, options.pixels);
+    if (!worst.ok()) return session.fail(worst.status());
+    pixels = std::move(*worst);
+  }
+  if (options.json) {
+    Json json = to_json(*difference);
+    for (const PixelDifference& d : pixels) json["pixels"].push_back(to_json(d));
+    std::printf("%s\n", json.dump(2).c_str());
+  } else {
     print_table(*difference);
+    for (const PixelDifference& d : pixels) print(d);
+  }
   if (std::fflush(stdout) != 0)
     return session.fail({StatusCode::cannot_write, "standard output: cannot write"});
   return kDone;
@@ -129,6 +156,11 @@ void add_compare_command(CLI::App& app, Command& chosen) {
       ->check(CLI::Range(1e-6, 179.0))
       ->type_name("DEG")
       ->capture_default_str();
+  command
+      ->add_option("--pixels", options->pixels,
+                   "List up to N pixels of each kind of difference; needs depths")
+      ->check(CLI::Range(0, 1000000))
+      ->type_name("N");
   add_common_options(*command, options->common);
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }

@@ -10,43 +10,6 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-class Depths {
- public:
-  Depths(const Image& a, const Image& b, const CompareOptions& options)
-      : a_(a), b_(b), options_(options), za_(a.find("Z")->values), zb_(b.find("Z")->values) {}
-
-  std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(a_.width) + static_cast<std::size_t>(x);
-  }
-  double edge(std::size_t i) const { return pixel_edge(a_, b_, za_[i], options_); }
-
-  bool interior(int x, int y) const {
-    const int r = kInteriorRadius;
-    if (x < r || y < r || x >= a_.width - r || y >= a_.height - r) return false;
-    const float z = za_[index(x, y)];
-    if (!std::isfinite(z)) return false;
-    const double reach = kContinuousDepthPx * edge(index(x, y));
-    for (int j = -r; j <= r; ++j)
-      for (int i = -r; i <= r; ++i)
-        if (!(std::abs(za_[index(x + i, y + j)] - z) <= reach)) return false;  // also where it is infinite
-    return true;
-  }
-  bool extra(int x, int y) const {
-    if (!std::isfinite(zb_[index(x, y)])) return false;
-    for (int j = std::max(0, y - kInteriorRadius); j <= std::min(a_.height - 1, y + kInteriorRadius); ++j)
-      for (int i = std::max(0, x - kInteriorRadius); i <= std::min(a_.width - 1, x + kInteriorRadius); ++i)
-        if (std::isfinite(za_[index(i, j)])) return false;
-    return true;
-  }
-  /// In edges of a pixel; infinite where B has nothing.
-  double difference(std::size_t i) const { return std::abs(static_cast<double>(zb_[i]) - za_[i]) / edge(i); }
-
- private:
-  const Image &a_, &b_;
-  const CompareOptions& options_;
-  const std::vector<float>&za_, &zb_;
-};
-
 void add_row(const Depths& depths, const NormalAngles& normals, int y, int width, GeometryMetrics& m,
              std::vector<float>& depth, std::vector<float>& angle) {
   for (int x = 0; x < width; ++x) {
@@ -66,6 +29,29 @@ void add_row(const Depths& depths, const NormalAngles& normals, int y, int width
 }
 
 }  // namespace
+
+Depths::Depths(const Image& a, const Image& b, const CompareOptions& options)
+    : a_(a), b_(b), options_(options), za_(a.find("Z")->values), zb_(b.find("Z")->values) {}
+
+bool Depths::interior(int x, int y) const {
+  const int r = kInteriorRadius;
+  if (x < r || y < r || x >= a_.width - r || y >= a_.height - r) return false;
+  const float z = za_[index(x, y)];
+  if (!std::isfinite(z)) return false;
+  const double reach = kContinuousDepthPx * edge(index(x, y));
+  for (int j = -r; j <= r; ++j)
+    for (int i = -r; i <= r; ++i)
+      if (!(std::abs(za_[index(x + i, y + j)] - z) <= reach)) return false;  // also where it is infinite
+  return true;
+}
+
+bool Depths::extra(int x, int y) const {
+  if (!std::isfinite(zb_[index(x, y)])) return false;
+  for (int j = std::max(0, y - kInteriorRadius); j <= std::min(a_.height - 1, y + kInteriorRadius); ++j)
+    for (int i = std::max(0, x - kInteriorRadius); i <= std::min(a_.width - 1, x + kInteriorRadius); ++i)
+      if (std::isfinite(za_[index(i, j)])) return false;
+  return true;
+}
 
 double pixel_edge(const Image& a, const Image& b, double depth, const CompareOptions& options) {
   for (const Image* image : {&a, &b})

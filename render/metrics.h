@@ -60,6 +60,24 @@ struct CompareOptions {
 /// pictures have no channels in common to compare.
 Result<PictureDifference> compare(const Image& a, const Image& b, const CompareOptions& options);
 
+/// A pixel at which two pictures differ, with what each has there.
+struct PixelDifference {
+  enum class Kind { hole, extra, silhouette, depth, normal };
+  Kind kind = Kind::hole;
+  int x = 0, y = 0;
+  double depth_a = 0, depth_b = 0;  ///< infinite: nothing is drawn
+  double depth_px = 0;              ///< their difference in edges of a pixel; infinite where one has nothing
+  double normal_degrees = 0;        ///< unsigned; 0 where there are none to compare
+  std::uint32_t face_a = 0, face_b = 0;  ///< of the "id" channels; 0: none
+};
+inline constexpr const char* kDifferenceNames[] = {"hole", "extra", "silhouette", "depth", "normal"};
+
+/// The first `most` holes, the first `most` pixels drawn outside, the first `most` others that only one
+/// covers, by rows; then the `most` interior pixels, no holes, with the largest difference in depth, and
+/// those with the largest in normal. invalid_argument where the sizes differ or a picture has no Z.
+Result<std::vector<PixelDifference>> worst_pixels(const Image& a, const Image& b,
+                                                  const CompareOptions& options, std::size_t most);
+
 /// Where two pictures differ: the ꟻLIP error (or, without colors, the depth and normal differences, 1 for 2
 /// pixels or 2 degrees) from black over red and yellow to white; what only A covers in blue, only B in green.
 Result<Image8> difference_picture(const Image& a, const Image& b, const CompareOptions& options);

@@ -2,6 +2,8 @@
 #ifndef DUPIN_RENDER_METRICS_DETAIL_H
 #define DUPIN_RENDER_METRICS_DETAIL_H
 
+#include <cmath>
+
 #include "metrics.h"
 
 namespace dupin {
@@ -30,6 +32,28 @@ class NormalAngles {
  private:
   const std::vector<float>*a_[3] = {}, *b_[3] = {};
   bool available_ = true;
+};
+
+/// Two pictures' depths, and what their differences mean.
+class Depths {
+ public:
+  Depths(const Image& a, const Image& b, const CompareOptions& options);
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(a_.width) + static_cast<std::size_t>(x);
+  }
+  /// Of a pixel, in model units.
+  double edge(std::size_t i) const { return pixel_edge(a_, b_, za_[i], options_); }
+  bool interior(int x, int y) const;
+  bool extra(int x, int y) const;
+  /// In edges of a pixel; infinite where B has nothing.
+  double difference(std::size_t i) const { return std::abs(static_cast<double>(zb_[i]) - za_[i]) / edge(i); }
+  double depth_a(std::size_t i) const { return za_[i]; }
+  double depth_b(std::size_t i) const { return zb_[i]; }
+
+ private:
+  const Image &a_, &b_;
+  const CompareOptions& options_;
+  const std::vector<float>&za_, &zb_;
 };
 
 }  // namespace dupin

@@ -127,6 +127,28 @@ TEST(GeometryMetrics, MeasuresAngles) {
   EXPECT_EQ(d->geometry->opposed_normals, 256U);
 }
 
+TEST(GeometryMetrics, NamesThePixelsThatDiffer) {
+  const Image a = depths(30);
+  Image b = a;
+  auto& z = b.channel("Z").values;
+  z[15 * 30 + 15] = kInfinity;
+  z[12 * 30 + 14] *= 1.001F;
+  z[0] = 100;
+  const auto worst = worst_pixels(a, b, {}, 3);
+  ASSERT_TRUE(worst.ok());
+  ASSERT_EQ(worst->size(), 3U);
+  using Kind = PixelDifference::Kind;
+  EXPECT_EQ((*worst)[0].kind, Kind::hole);
+  EXPECT_EQ((*worst)[0].x, 15);
+  EXPECT_EQ((*worst)[0].y, 15);
+  EXPECT_EQ((*worst)[1].kind, Kind::extra);
+  EXPECT_EQ((*worst)[1].x, 0);
+  EXPECT_EQ((*worst)[2].kind, Kind::depth);
+  EXPECT_EQ((*worst)[2].x, 14);
+  EXPECT_GT((*worst)[2].depth_px, 0);
+  EXPECT_FALSE(worst_pixels(a, depths(20), {}, 3).ok());
+}
+
 TEST(Distribution, PercentilesAreRanks) {
   std::vector<float> values;
   for (int i = 1000; i >= 1; --i) values.push_back(static_cast<float>(i));

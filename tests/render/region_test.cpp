@@ -1,5 +1,6 @@
-// The shaders' region test against its twin on the CPU (sampling/region.cpp): random footprints, lines, arcs, ellipses and planes on planes
-// and on curved quadrics, drawn small and large, every pixel of a picture a test point.
+// The shaders' region test against its twin on the CPU (sampling/region.cpp): random footprints, lines, arcs,
+// ellipses and planes on planes and on curved quadrics, drawn small and large, every pixel of a picture a
+// test point.
 #include <random>
 
 #include "../../render/view.h"
@@ -43,8 +44,9 @@ struct RandomRegions {
     for (std::size_t i = 0; i < p.size(); ++i) {
       const Vec2 a = p[i], b = p[(i + 1) % p.size()], side{a.y - b.y, b.x - a.x};
       if (real(0, 1) < arcs) {
-        part.arcs.push_back({a, (a + b) * 0.5 + (b - a) * real(-0.3, 0.3) + side * (real(0.05, 0.3) * (coin() ? 1 : -1)),
-                             b, real(0.2, 2.5), coin()});
+        part.arcs.push_back(
+            {a, (a + b) * 0.5 + (b - a) * real(-0.3, 0.3) + side * (real(0.05, 0.3) * (coin() ? 1 : -1)), b,
+             real(0.2, 2.5), coin()});
         ++dp.arcs;
       } else {
         part.lines.push_back({a, b, coin()});
@@ -65,7 +67,8 @@ struct RandomRegions {
     dp.first_arc = static_cast<std::uint32_t>(part.arcs.size());
     dp.first_ellipse = static_cast<std::uint32_t>(part.ellipses.size());
     const double arcs = whole(0, 2) / 2.0;
-    if (whole(0, 5) > 0) loop(part, dp, {real(-0.2, 0.2), real(-0.2, 0.2)}, real(0.6, 1.3), whole(3, most_corners), arcs);
+    if (whole(0, 5) > 0)
+      loop(part, dp, {real(-0.2, 0.2), real(-0.2, 0.2)}, real(0.6, 1.3), whole(3, most_corners), arcs);
     for (int k = whole(0, 3); k > 0; --k) {
       const Vec2 centre{real(-0.6, 0.6), real(-0.6, 0.6)};
       if (coin()) {
@@ -82,7 +85,8 @@ struct RandomRegions {
     dp.first_plane = static_cast<std::uint32_t>(part.planes.size());
     for (int k = whole(0, 2); k > 0; --k) {
       const double angle = real(0, 2 * kPi);
-      part.planes.push_back({normalized(Vec3{std::cos(angle), std::sin(angle), real(-0.5, 0.5)}), real(0.1, 0.9), coin()});
+      part.planes.push_back(
+          {normalized(Vec3{std::cos(angle), std::sin(angle), real(-0.5, 0.5)}), real(0.1, 0.9), coin()});
       ++dp.planes;
     }
   }
@@ -91,9 +95,9 @@ struct RandomRegions {
     const Vec3 u = normalized(Vec3{real(-1, 1), real(-1, 1), real(-1, 1)});
     const Vec3 v = normalized(cross(u, Vec3{real(-1, 1), real(-1, 1), real(-1, 1)}));
     const Vec3 origin{real(-3, 3), real(-3, 3), real(-3, 3)};
-    QuadricDp result =
-        planar ? plane_rectangle(origin, u, v, 2, 2)
-               : bent_square(origin, u, v, real(-0.9, 0.9), real(-0.9, 0.9), {real(-0.2, 0.2), real(-0.2, 0.2), 0}, 1);
+    QuadricDp result = planar ? plane_rectangle(origin, u, v, 2, 2)
+                              : bent_square(origin, u, v, real(-0.9, 0.9), real(-0.9, 0.9),
+                                            {real(-0.2, 0.2), real(-0.2, 0.2), 0}, 1);
     if (!planar && whole(0, 3) == 0) result = whole_cylinder(origin, u, v, real(0.7, 1), 1);
     result.flipped = coin();
     result.feature_sides = static_cast<std::uint8_t>(whole(0, 63));
@@ -111,7 +115,8 @@ struct RandomRegions {
     c.ortho_height = distance * 0.5;
     c.target = dp.origin;
     const double side = coin() ? 1 : -1;
-    c.eye = dp.origin + normalized(dp.n() * side + dp.u * real(-0.9, 0.9) + dp.v * real(-0.9, 0.9)) * distance;
+    c.eye =
+        dp.origin + normalized(dp.n() * side + dp.u * real(-0.9, 0.9) + dp.v * real(-0.9, 0.9)) * distance;
     c.up = dp.u + dp.v * 0.3;
     return c;
   }
