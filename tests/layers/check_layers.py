@@ -20,8 +20,9 @@ LAYERS = {
 }
 LIBRARY = list(LAYERS)
 LAYERS["app"] = LIBRARY
-for above in ("bench", "examples", "integrations", "samples", "tests"):
+for above in ("bench", "examples", "integrations", "samples"):
     LAYERS[above] = LIBRARY + ["app"]
+LAYERS["tests"] = LIBRARY + ["app", "bench"]
 
 OCCT_ALLOWED = {"cad_import", "samples", "tests", "bench"}
 GL_ALLOWED = {"render", "examples", "integrations", "tests"}
