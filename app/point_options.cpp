@@ -9,7 +9,7 @@ namespace dupin::app {
 
 Status PointOptions::check() const {
   const auto bad = [](const char* why) { return Status{StatusCode::invalid_argument, why}; };
-  if (method != "uniform" && (grid != 0 || spacing != 0))
+  if (!method.empty() && method != "uniform" && (grid != 0 || spacing != 0))
     return bad("--grid and --spacing go with --method uniform");
   if (grid != 0 && spacing != 0) return bad("--grid and --spacing exclude each other");
   if (method != "adaptive" && border != 0) return bad("--border goes with --method adaptive");
@@ -21,9 +21,8 @@ Status PointOptions::check() const {
 PointSamplingOptions PointOptions::sampling(const Model& model) const {
   const double diagonal = bounding_box(model).diagonal();
   PointSamplingOptions result;
-  result.method =
-      static_cast<PointMethod>(std::find(std::begin(kPointMethodNames), std::end(kPointMethodNames), method) -
-                               std::begin(kPointMethodNames));
+  const auto* name = std::find(std::begin(kPointMethodNames), std::end(kPointMethodNames), method);
+  if (!method.empty()) result.method = static_cast<PointMethod>(name - std::begin(kPointMethodNames));
   result.grid = grid;
   result.spacing = spacing;
   result.epsilon = epsilon;
@@ -46,7 +45,6 @@ void add_point_options(CLI::App& command, PointOptions& options, bool tolerance)
                   "asks; certified: the "
                   "quadric DPs' own")
       ->check(CLI::IsMember({"uniform", "adaptive", "certified"}))
-      ->capture_default_str()
       ->group(group);
   command
       .add_option("--grid", options.grid,

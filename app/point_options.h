@@ -14,7 +14,7 @@ class App;
 namespace dupin::app {
 
 struct PointOptions {
-  std::string method = "uniform";
+  std::string method;  ///< empty: uniform, or what the command chooses
   int grid = 0;
   double spacing = 0, epsilon = 0.012, delta = 0, border = 0;
   double tolerance = 0;
@@ -23,6 +23,10 @@ struct PointOptions {
 
   /// What is wrong with options that are fine each by itself.
   Status check() const;
+  bool given() const {
+    return !method.empty() || grid || spacing > 0 || epsilon != 0.012 || delta > 0 || border > 0 ||
+           tolerance > 0 || simplify;
+  }
   /// Lengths that were not given follow from the model's diagonal.
   PointSamplingOptions sampling(const Model& model) const;
   PruneOptions pruning() const;

@@ -50,7 +50,7 @@ Status RenderJob::reserve_outputs() {
 }
 
 Status RenderJob::load_model() {
-  Result<Loaded> loaded = load(session_, options_.files, primitive_->deflection(options_));
+  Result<Loaded> loaded = primitive_->load(session_, options_);
   if (!loaded.ok()) return loaded.status();
   stats_.times.import = loaded->import_seconds;
   model_ = std::move(loaded->model);
@@ -106,6 +106,7 @@ DrawOptions RenderJob::draw_options() const {
   draw.color = options_.uniform_color();
   draw.samples = options_.sample_count();
   draw.exact_model = &model_;
+  for (const Vec3& position : options_.light_positions()) draw.lights.push_back({position});
   return draw;
 }
 

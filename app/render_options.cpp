@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "../render/renderer.h"
 #include "colors.h"
 #include "render_primitive.h"
 
@@ -15,6 +16,10 @@ std::string extension(const std::string& path) {
   std::string text = path.substr(dot);
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
   return text;
+}
+
+bool is_points_file(const std::string& file) {
+  return extension(file) == ".dps";
 }
 
 std::string joined(const std::vector<std::string>& names, const char* between) {
@@ -48,7 +53,9 @@ std::string check_background(const std::string& text) {
 void add_quality_options(CLI::App& command, RenderOptions& options) {
   const char* group = "What is drawn";
   command
-      .add_option("--primitive", options.primitive, "auto, quadric, or triangles: the tessellated reference")
+      .add_option("--primitive", options.primitive,
+                  "auto, quadric; dp: the papers' flat differential points; square, rectangle, ellipse: "
+                  "splats; triangles: the tessellated reference")
       ->check(CLI::Validator(check_primitive, ""))
       ->type_name("NAME")
       ->capture_default_str()
@@ -74,6 +81,15 @@ void add_quality_options(CLI::App& command, RenderOptions& options) {
       ->type_name("D")
       ->capture_default_str()
       ->group(group);
+  add_point_options(command, options.points, false);
+  command
+      .add_option(
+          "--point-shading", options.point_shading,
+          "Of dp: published, by normal maps and light vectors linear over each rectangle, or analytic, "
+          "computed for each pixel")
+      ->check(CLI::IsMember({"published", "analytic"}))
+      ->capture_default_str()
+      ->group("Differential points");
   command.add_option("--samples", options.samples, "Samples a pixel (default: 4, for EXR 1)")
       ->check(CLI::Range(1, 64))
       ->type_name("N")
@@ -95,6 +111,12 @@ void add_look_options(CLI::App& command, RenderOptions& options) {
       ->check(CLI::Validator(check_color, ""))
       ->type_name("COLOR")
       ->group(group);
+  command
+      .add_option("--light", options.lights,
+                  "A point light in model space, in place of those around the camera; up to 8 times")
+      ->delimiter(',')
+      ->type_name("X,Y,Z")
+      ->group(group);
   command.add_option("--shading", options.shading, "What the colour shows")
       ->check(CLI::IsMember({"lit", "normal", "k1", "k2", "mean", "gaussian", "zebra", "face", "primitive"}))
       ->capture_default_str()
@@ -102,6 +124,22 @@ void add_look_options(CLI::App& command, RenderOptions& options) {
 }
 
 }  // namespace
+
+bool RenderOptions::points_files() const {
+  return !files.empty() && std::all_of(files.begin(), files.end(), is_points_file);
+}
+
+bool RenderOptions::draws_points() const {
+  if (primitive == "auto") return points_files();
+  return primitive == "dp" || primitive == "square" || primitive == "rectangle" || primitive == "ellipse";
+}
+
+std::vector<Vec3> RenderOptions::light_positions() const {
+  std::vector<Vec3> positions;
+  for (std::size_t i = 0; i + 2 < lights.size(); i += 3)
+    positions.push_back({lights[i], lights[i + 1], lights[i + 2]});
+  return positions;
+}
 
 bool RenderOptions::exr() const {
   return extension(output) == ".exr";
@@ -111,6 +149,20 @@ Status RenderOptions::check() const {
   const auto bad = [](std::string why) { return Status{StatusCode::invalid_argument, std::move(why)}; };
   if (!exr() && extension(output) != ".png") return bad(output + ": a picture's name ends in .png or .exr");
   if (!exr() && !aovs.empty()) return bad("--aov goes with an EXR; a PNG shows --shading");
+  if (lights.size() % 3 != 0 || lights.size() / 3 > kMostLights)
+    return bad("--light takes X,Y,Z, up to " + std::to_string(kMostLights) + " times");
+  return check_points();
+}
+
+Status RenderOptions::check_points() const {
+  const auto bad = [](std::string why) { return Status{StatusCode::invalid_argument, std::move(why)}; };
+  const bool any = std::any_of(files.begin(), files.end(), is_points_file);
+  if (any && !points_files()) return bad(".dps files are drawn with other .dps files only");
+  if (any && !draws_points()) return bad("a .dps file is drawn as dp, square, rectangle or ellipse");
+  if (any && points.given()) return bad("the points of a .dps file are drawn as they are");
+  if (!draws_points() && (points.given() || point_shading != "published"))
+    return bad("options of differential points go with --primitive dp, square, rectangle or ellipse");
+  if (const Status status = points.check(); !status.ok()) return status;
   return {};
 }
 

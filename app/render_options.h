@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "../nurbs/model.h"
+#include "point_options.h"
 #include "session.h"
 #include "view.h"
 
@@ -26,11 +27,20 @@ struct RenderOptions {
   std::vector<std::string> aovs;  ///< empty: color, normal, depth
   std::string shading = "lit", device = "auto";
   int repeat = 1;
+  std::vector<double> lights;  ///< x, y, z of each
+  PointOptions points;
+  std::string point_shading = "published";
 
   bool exr() const;
+  /// The files are .dps.
+  bool points_files() const;
+  /// Drawn as points: dp or a splat.
+  bool draws_points() const;
+  std::vector<Vec3> light_positions() const;
   int sample_count() const { return samples > 0 ? samples : exr() ? 1 : 4; }
   /// What is wrong with options that are fine each by itself.
   Status check() const;
+  Status check_points() const;
   std::optional<Color> uniform_color() const;
   /// Alpha 0 for none.
   Color background_color() const;

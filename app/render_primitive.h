@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../render/renderer.h"
+#include "load.h"
 #include "render_options.h"
 #include "render_stats.h"
 
@@ -26,7 +27,10 @@ class RenderPrimitive {
   virtual ~RenderPrimitive() = default;
   /// What the statistics call it.
   virtual std::string kind() const = 0;
-  /// The reader's meshes are wanted, at this part of the diagonal; 0: none.
+  /// Reads the files. The reader's meshes are wanted where `deflection`, a part of the diagonal, is not 0.
+  virtual Result<Loaded> load(Session& session, const RenderOptions& options) {
+    return app::load(session, options.files, deflection(options));
+  }
   virtual double deflection(const RenderOptions&) const { return 0; }
   /// Makes what is drawn; fills in the statistics' faces, prepare time and error.
   virtual Status prepare(const PrimitiveInput& input, RenderStats& stats) = 0;
@@ -46,6 +50,7 @@ std::unique_ptr<RenderPrimitive> make_primitive(const RenderOptions& options);
 
 std::unique_ptr<RenderPrimitive> make_quadric_primitive(const RenderOptions& options);
 std::unique_ptr<RenderPrimitive> make_triangles_primitive(const RenderOptions& options);
+std::unique_ptr<RenderPrimitive> make_points_primitive(const RenderOptions& options);
 
 }  // namespace dupin::app
 

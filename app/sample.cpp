@@ -109,7 +109,7 @@ class SampleJob {
     for (const PartPoints& part : made_.scene.parts)
       for (const DifferentialPoint& p : part.points) bound = std::max(bound, p.bound);
     json["file"] = options_.file;
-    json["method"] = options_.points.method;
+    json["method"] = kPointMethodNames[static_cast<std::size_t>(sampling_.method)];
     json["epsilon"] = certified ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(sampling_.epsilon);
     json["delta"] = certified ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(sampling_.delta);
     json["faces"] = to_json(faces_);

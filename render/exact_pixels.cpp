@@ -154,6 +154,7 @@ class Row {
     const Part& part = model_.parts[instance_->part];
     if (name.face >= part.faces.size()) return;  // a mesh without exact faces
     exact_face_ = &part.faces[name.face];
+    if (exact_face_->surface >= part.surfaces.size()) return;  // points without their surface
     surface_ = &part.surfaces[exact_face_->surface];
     quadric_ = is_quadric(*surface_);
     search_.emplace(*surface_, exact_face_->uv_box);

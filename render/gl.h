@@ -26,7 +26,7 @@ namespace dupin {
   X(DELETEPROGRAM, DeleteProgram) X(DELETESHADER, DeleteShader) X(DELETETEXTURES, DeleteTextures)           \
   X(DELETEVERTEXARRAYS, DeleteVertexArrays) X(DEPTHFUNC, DepthFunc) X(DEPTHMASK, DepthMask)                 \
   X(DEPTHRANGE, DepthRange) X(DISABLE, Disable) X(DISABLEI, Disablei) X(DRAWARRAYS, DrawArrays)             \
-  X(DRAWBUFFERS, DrawBuffers) X(DRAWELEMENTS, DrawElements) X(ENABLE, Enable) X(ENABLEI, Enablei)           \
+  X(DRAWBUFFERS, DrawBuffers) X(DRAWELEMENTS, DrawElements) X(DRAWELEMENTSBASEVERTEX, DrawElementsBaseVertex) X(ENABLE, Enable) X(ENABLEI, Enablei)           \
   X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray) X(ENDTRANSFORMFEEDBACK, EndTransformFeedback)         \
   X(FINISH, Finish) X(FRAMEBUFFERTEXTURE2D, FramebufferTexture2D) X(FRONTFACE, FrontFace)                   \
   X(GENBUFFERS, GenBuffers) X(GENFRAMEBUFFERS, GenFramebuffers) X(GENTEXTURES, GenTextures)                 \
@@ -40,7 +40,7 @@ namespace dupin {
   X(GETUNIFORMLOCATION, GetUniformLocation) X(ISENABLED, IsEnabled) X(ISENABLEDI, IsEnabledi)               \
   X(LINKPROGRAM, LinkProgram) X(PIXELSTOREI, PixelStorei) X(POLYGONMODE, PolygonMode)                       \
   X(READBUFFER, ReadBuffer) X(READPIXELS, ReadPixels) X(SCISSOR, Scissor) X(SHADERSOURCE, ShaderSource)     \
-  X(STENCILMASK, StencilMask) X(TEXBUFFER, TexBuffer) X(TEXIMAGE2D, TexImage2D)                             \
+  X(STENCILMASK, StencilMask) X(TEXBUFFER, TexBuffer) X(TEXIMAGE2D, TexImage2D) X(TEXIMAGE3D, TexImage3D)                             \
   X(TEXPARAMETERI, TexParameteri) X(TRANSFORMFEEDBACKVARYINGS, TransformFeedbackVaryings)                   \
   X(UNIFORM1F, Uniform1f) X(UNIFORM1I, Uniform1i) X(UNIFORM1UI, Uniform1ui) X(UNIFORM2F, Uniform2f)         \
   X(UNIFORM3I, Uniform3i) X(UNIFORM3F, Uniform3f) X(UNIFORM4F, Uniform4f)                                   \

@@ -1,9 +1,20 @@
 #include "layer.h"
 
+#include "point_layer.h"
+
 namespace dupin {
 
-std::vector<std::shared_ptr<Layer>> make_layers(const Model&, const SceneContent& content) {
-  return content.layers;
+Result<std::vector<std::shared_ptr<Layer>>> make_layers(const Model& model, const SceneContent& content) {
+  std::vector<std::shared_ptr<Layer>> layers = content.layers;
+  if (content.points.scene) {
+    if (content.points.scene->parts.size() != model.parts.size())
+      return {StatusCode::invalid_argument,
+              "the points are not those of this model: the numbers of parts differ"};
+    layers.push_back(make_point_layer(content.points));
+  }
+  if (layers.size() > kMostLayers)
+    return {StatusCode::limit, "a scene can have " + std::to_string(kMostLayers) + " layers"};
+  return layers;
 }
 
 std::string layer_define(std::uint32_t layer) {

@@ -77,8 +77,8 @@ class Layer {
   virtual void bind(const LayerPass& pass, GLuint program) const = 0;
 };
 
-/// The layers of what `content` holds besides DPs.
-std::vector<std::shared_ptr<Layer>> make_layers(const Model& model, const SceneContent& content);
+/// The layers of what `content` holds besides DPs; limit if they are more than kMostLayers.
+Result<std::vector<std::shared_ptr<Layer>>> make_layers(const Model& model, const SceneContent& content);
 
 /// A program of the layer's own, in use, with LAYER defined and the camera's uniforms set. Vertex shaders
 /// include proxy.glsl for to_clip(); what they put out as an id is LAYER | own number.

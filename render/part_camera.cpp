@@ -60,4 +60,13 @@ PartCamera part_camera(const SceneInstance& instance, const ScenePart& part, con
   return camera;
 }
 
+bool out_of_view(const PartCamera& camera, const Box3& box, const Vec3& anchor) {
+  const Vec3 center = box.center() - anchor;
+  const double radius = box.diagonal() / 2;
+  for (const Plane3& side : camera.sides)
+    if (dot(side.n, center) + side.d < -radius) return true;
+  return camera.perspective &&
+         dot(camera.depth.n, center) + camera.depth.d < -radius * length(camera.depth.n);
+}
+
 }  // namespace dupin

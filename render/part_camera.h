@@ -28,6 +28,9 @@ struct PartCamera {
   bool cull_turned_away;
 };
 
+/// Whether nothing of a box (in the part's space, not relative to the anchor) can be in the picture.
+bool out_of_view(const PartCamera& camera, const Box3& box, const Vec3& anchor);
+
 /// `sides`: side_planes(view), which all placements share.
 PartCamera part_camera(const SceneInstance& instance, const ScenePart& part, const ViewRays& view,
                        const std::array<Plane3, 4>& sides);

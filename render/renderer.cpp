@@ -56,6 +56,8 @@ Status check(const DrawOptions& options) {
     return {StatusCode::invalid_argument, "a pixel can have 1 to 256 samples"};
   if ((options.outputs & kUv) && !options.exact_model)
     return {StatusCode::invalid_argument, "parameters need the model"};
+  if (options.lights.size() > kMostLights)
+    return {StatusCode::invalid_argument, "a frame can have " + std::to_string(kMostLights) + " lights"};
   return {};
 }
 
@@ -105,9 +107,9 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const GetProcAddress& get_pro
 
 Result<std::unique_ptr<Scene>> Renderer::upload(const Model& model, const SceneContent& content) {
   auto scene = std::make_unique<Scene::Impl>();
-  scene->layers = make_layers(model, content);
-  if (scene->layers.size() > kMostLayers)
-    return {StatusCode::limit, "a scene can have " + std::to_string(kMostLayers) + " layers"};
+  auto layers = make_layers(model, content);
+  if (!layers) return layers.status();
+  scene->layers = std::move(*layers);
   ScenePackage package;
   Status status = pack_scene(model, content.dps, *scene, package);
   if (!status.ok()) return status;
@@ -159,7 +161,7 @@ Status Renderer::Impl::draw_samples(const Scene::Impl& scene, const ViewRays& vi
   Status status = prepare_targets(view.width, view.height,
                                   others | color | exact | (screen ? 1U << kScreenPicture : 0U), format);
   const bool together = options.samples == 1 || !color;
-  const bool at_once = screen && !floats && drawn_at_once(options.shading);
+  const bool at_once = screen && !floats && drawn_at_once(options.shading) && options.lights.empty();
   if (at_once && status.ok() && !together) prepare_sample(view.width, view.height);
   for (int i = 0; i < options.samples && status.ok() && !together; ++i) {
     const Vec2 offset = sample_offset(i, options.samples);

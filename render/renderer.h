@@ -21,6 +21,7 @@
 #include "../core/camera.h"
 #include "../core/status.h"
 #include "../nurbs/model.h"
+#include "../sampling/differential_point.h"
 #include "../sampling/quadric_dp.h"
 #include "context.h"
 
@@ -55,6 +56,8 @@ enum Output : unsigned {
   kScreen = 512,     ///< the colors in 8 bits, for a PNG: sRGB, straight alpha; costs least
 };
 
+inline constexpr std::size_t kMostLights = 8;
+
 struct DrawOptions {
   unsigned outputs = kColor;
   Shading shading = Shading::lit;
@@ -63,6 +66,12 @@ struct DrawOptions {
   std::optional<Color> background = Color{1, 1, 1, 1};  ///< linear; none: transparent
   std::optional<Color> color;                           ///< instead of the file's colours
   int samples = 1;  ///< a pixel, for its colour; 1 … 256. The other outputs are those of the pixel's centre.
+  /// Point lights in model space, in place of the built-in ones around the camera; at most kMostLights.
+  struct Light {
+    Vec3 position;
+    Color color{1, 1, 1, 1};  ///< linear
+  };
+  std::vector<Light> lights;
   double curvature_scale = 0;  ///< |curvature| that gets the full colour; 0: chosen from the scene's size
   /// The model that the scene was made from, for draw() and draw_only(). With it curvatures, as outputs and
   /// as colours, are the exact surface's at its point nearest to the drawn one. That is worked out on the
@@ -129,12 +138,28 @@ struct HostView {
 
 class Layer;
 
+/// How differential points are drawn (Kalaiah & Varshney 2001, 2003).
+enum class PointPrimitive {
+  differential_point,  ///< the flat rectangle in the tangent plane, with the point's normal field
+  square,     ///< parallel to the picture, as wide as the point's ball has a radius (sampling/ball_radius.h)
+  rectangle,  ///< around the ball's disc in the tangent plane, as seen along the view axis
+  ellipse,    ///< the disc as seen along the view axis
+};
+struct PointContent {
+  const PointScene* scene = nullptr;  ///< one entry a part of the model
+  PointPrimitive primitive = PointPrimitive::differential_point;
+  /// Differential points as published: normals from 256 maps over λv/λu, light vectors linear over each
+  /// rectangle. Else both are computed for each pixel: normals by eq. 10 (2003).
+  bool published = true;
+};
+
 /// What a scene is drawn from, beside its model: one entry a kind of representation.
 struct SceneContent {
   /// One entry a part of the model.
   const DpScene* dps = nullptr;
   /// Further kinds, made with what stands in render/layer.h.
   std::vector<std::shared_ptr<Layer>> layers;
+  PointContent points;
 };
 
 class Renderer {

@@ -57,6 +57,7 @@ Variant shading_variant(unsigned pictures, const DrawOptions& options, const Lay
   if (color) v.define("COLOR");
   if (color && wants_exact_colors(options)) v.define("EXACT_CURVATURES");
   if (color) v.define("SHADING " + std::to_string(static_cast<int>(options.shading)));
+  if (color && !options.lights.empty()) v.define("LIGHTS " + std::to_string(options.lights.size()));
   if (pictures & 1U << kNormalDepthPicture) v.define("NORMAL_DEPTH");
   if (curves) v.define("CURVATURE");
   if (curves || (color && needs_curvature(options.shading))) v.define("CURVES");
@@ -68,6 +69,7 @@ Variant shading_variant(unsigned pictures, const DrawOptions& options, const Lay
   v.text.fragment = {"shade_head.glsl"};
   v.text.fragment.insert(v.text.fragment.end(), surface.surface.begin(), surface.surface.end());
   v.text.fragment.push_back("looks.glsl");
+  v.text.fragment.push_back("lights.glsl");
   v.text.fragment.push_back("shade.frag");
   return v;
 }
@@ -227,6 +229,14 @@ void Renderer::Impl::set_looks(GLuint name, const Pass& pass) const {
   const Color under = pass.samples > 1 ? premultiplied_background(options) : Color{0, 0, 0, 0};
   gl->Uniform4f(uniform("under"), under.r, under.g, under.b, under.a);
   gl->Uniform1f(uniform("curvature_scale"), static_cast<float>(curvature_scale(*pass.scene, options)));
+  for (std::size_t i = 0; i < options.lights.size(); ++i) {
+    const std::string element = "[" + std::to_string(i) + "]";
+    const Vec3 d = options.lights[i].position - pass.view.eye;
+    const Color& c = options.lights[i].color;
+    gl->Uniform3f(uniform(("lights" + element).c_str()), static_cast<float>(dot(d, pass.view.right)),
+                  static_cast<float>(dot(d, pass.view.up)), static_cast<float>(-dot(d, pass.view.forward)));
+    gl->Uniform3f(uniform(("light_colors" + element).c_str()), c.r, c.g, c.b);
+  }
   gl->Uniform1ui(uniform("only_color"), options.color ? srgb_word(*options.color) : 0);
 }
 
@@ -254,7 +264,7 @@ void Renderer::Impl::cover_bands(GLuint name) {
 
 Status Renderer::Impl::shade_dps(const Pass& pass) {
   if (list_.items.empty()) return {};
-  static const LayerShading kSurface{"", {"quadric.glsl", "surface_dp.glsl"}, {}, {}};
+  static const LayerShading kSurface{"", {"quadric.glsl", "curvatures.glsl", "surface_dp.glsl"}, {}, {}};
   GLuint name = 0;
   const Status status =
       use_shading_program(pass, shading_variant(pass.pictures, *pass.options, kSurface), name);

@@ -5,12 +5,6 @@ namespace {
 
 constexpr double kHalfPi = 1.57079632679489661923;
 
-/// How far a circle of curvature λ is from its tangent at a distance h: (1 − √(1 − (λh)²)) / |λ|.
-double sagitta(double lambda, double h) {
-  const double s = std::min(1.0, lambda * lambda * h * h);
-  return std::abs(lambda) * h * h / (1 + std::sqrt(1 - s));
-}
-
 /// arcsin(x)/x, and 1 at 0; for |x| >= 1 the arc ends.
 double arcsine_ratio(double x) {
   const double a = std::abs(x);
@@ -23,6 +17,11 @@ double arcsine_ratio(double x) {
 double half_extent(double lambda, double epsilon, double delta) {
   const double reach = std::sqrt(2 * epsilon - epsilon * epsilon);
   return reach < delta * std::abs(lambda) ? reach / std::abs(lambda) : delta;
+}
+
+double sagitta(double lambda, double h) {
+  const double s = std::min(1.0, lambda * lambda * h * h);
+  return std::abs(lambda) * h * h / (1 + std::sqrt(1 - s));
 }
 
 void set_extents(DifferentialPoint& point, double epsilon, double delta) {

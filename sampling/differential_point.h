@@ -38,6 +38,8 @@ struct DifferentialPoint {
 
 /// min(δ, √(2ε − ε²) / |λ|), for 0 < ε <= 1.
 double half_extent(double lambda, double epsilon, double delta);
+/// How far a circle of curvature λ is from its tangent at a distance: (1 − √(1 − (λh)²)) / |λ|.
+double sagitta(double lambda, double distance);
 /// Sets half_u, half_v and bound.
 void set_extents(DifferentialPoint& point, double epsilon, double delta);
 
@@ -62,6 +64,7 @@ struct PartPoints {
   std::vector<SampleGrid> grids;
   std::vector<std::uint32_t> grid_points;
   std::vector<std::array<std::uint32_t, 2>> edges;
+  bool pruned = false;  ///< grids and edges have lost points: what is left of them is not next to each other
   std::vector<SkippedFace> skipped;  ///< faces without a point
 };
 

@@ -208,6 +208,7 @@ void append(const PartPoints& from, PartPoints& to) {
   for (const std::uint32_t index : from.grid_points)
     to.grid_points.push_back(index == kNoPoint ? kNoPoint : first + index);
   for (const auto& [a, b] : from.edges) to.edges.push_back({first + a, first + b});
+  to.pruned = to.pruned || from.pruned;
   to.skipped.insert(to.skipped.end(), from.skipped.begin(), from.skipped.end());
 }
 

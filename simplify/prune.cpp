@@ -133,9 +133,8 @@ class Pruner {
         at_border_(part.points.size(), false),
         blocks_(make_blocks(part)),
         arenas_(blocks_.points.size() + 1) {
-    const double scale = 1 - options.scale_down;
     parallel_for(
-        rectangles_.size(), [&](std::size_t i) { rectangles_[i] = rectangle_of(part.points[i], scale); },
+        rectangles_.size(), [&](std::size_t i) { rectangles_[i] = rectangle_of(part.points[i], options); },
         1024);
     fill_lists(neighbor_pairs(part, rectangles_, options));
   }
@@ -294,6 +293,7 @@ void keep_only(PartPoints& part, const std::vector<bool>& keep) {
       place[i] = static_cast<std::uint32_t>(points.size());
       points.push_back(part.points[i]);
     }
+  part.pruned = part.pruned || points.size() < part.points.size();
   part.points = std::move(points);
   for (std::uint32_t& p : part.grid_points)
     if (p != kNoPoint) p = place[p];
@@ -309,6 +309,7 @@ PruneOptions papers_prune_options() {
   PruneOptions options;
   options.enclosure = EnclosureTest::segments;
   options.scale_down = 0.15;
+  options.slant = 0;
   options.across_patches = false;
   options.grid_neighbors = 8;
   options.reconnected = static_cast<std::size_t>(-1);
@@ -321,6 +322,7 @@ namespace {
 Status check(const PruneOptions& options) {
   if (!(options.scale_down >= 0 && options.scale_down < 1))
     return {StatusCode::invalid_argument, "rectangles can be made smaller by 0 to 1, less than all of them"};
+  if (!(options.slant >= 0)) return {StatusCode::invalid_argument, "a slant's tangent is at least 0"};
   if (options.grid_neighbors != 8 && options.grid_neighbors != 24)
     return {StatusCode::invalid_argument, "a sample has 8 or 24 first neighbours"};
   return {};

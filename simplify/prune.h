@@ -31,6 +31,11 @@ struct PruneOptions {
   /// Rectangles are made smaller by this part for the test. The papers: 0.15, to make up for what segments
   /// miss.
   double scale_down = 0;
+  /// Both tests look along a point's normal. Seen at a slant, rectangles in different planes shift against
+  /// each other by their distances times the slant's tangent: so each is made smaller, on either side, by
+  /// this tangent times the distance of the osculating circle from it at its edge. 2: no hole opens up to 63°
+  /// from the normal, where a surface is as its osculating circles are. The papers: 0.
+  double slant = 2;
   /// 8 or 24: the samples around a sample of a grid that are its first neighbours.
   int grid_neighbors = 24;
   /// Neighbours also across the borders of patches and faces; the papers: not.

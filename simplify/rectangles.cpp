@@ -7,6 +7,8 @@ namespace {
 
 /// More pieces than this, and the rectangle is taken for not enclosed.
 constexpr std::size_t kMostPieces = 128;
+/// What is at least left of a half-extent for the tests.
+constexpr double kLeastTested = 0.25;
 
 /// arcsin(x)/x; a series where it is as good.
 double arcsine_ratio(double x) {
@@ -120,8 +122,12 @@ bool segment_enclosed(Vec2 a, Vec2 b, std::span<const Shadow> shadows) {
 
 }  // namespace
 
-Rectangle rectangle_of(const DifferentialPoint& p, double scale) {
-  const double half_u = p.half_u * scale, half_v = p.half_v * scale;
+Rectangle rectangle_of(const DifferentialPoint& p, const PruneOptions& options) {
+  const auto tested = [&](double lambda, double half) {
+    const double smaller = half * (1 - options.scale_down) - options.slant * sagitta(lambda, half);
+    return std::max(smaller, kLeastTested * half);
+  };
+  const double half_u = tested(p.lambda_u, p.half_u), half_v = tested(p.lambda_v, p.half_v);
   return {p.position, p.u,        p.v,
           p.n(),      p.lambda_u, p.lambda_v,
           half_u,     half_v,     std::sqrt(half_u * half_u + half_v * half_v)};

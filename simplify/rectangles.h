@@ -11,13 +11,15 @@
 
 namespace dupin {
 
+struct PruneOptions;
+
 struct Rectangle {
   Vec3 position, u, v, n;
   double lambda_u, lambda_v;
   double half_u, half_v;  ///< as tested: already made smaller
   double radius;
 };
-Rectangle rectangle_of(const DifferentialPoint& point, double scale);
+Rectangle rectangle_of(const DifferentialPoint& point, const PruneOptions& options);
 
 /// Half of a pair's term in eq. 6: how near the normal fields, normalised, come to each other's normals.
 double similarity(const Rectangle& p, const Rectangle& q);

@@ -9,6 +9,7 @@ struct Placed {
   vec3 hi, lo;    // S, in two floats
   vec3 origin;    // the ray is  S + origin + t direction,  t its depth beyond start_depth
   vec3 direction;
+  vec3 row_x, row_y;  // the clip coordinates of S + p are row·p
   vec3 depth_row; // the depth of S + p is  start_depth + depth_row·p
   mat3 to_view;   // rows: takes normals (covectors) to view space
   uint first_face;
@@ -24,6 +25,8 @@ Placed placed_at(int instance, vec2 at) {
   placed.lo = texelFetch(instances, first + 1).xyz;
   placed.origin = start * across;
   placed.direction = f + spread * across;
+  placed.row_x = texelFetch(instances, first + 5).xyz;
+  placed.row_y = texelFetch(instances, first + 6).xyz;
   placed.depth_row = texelFetch(instances, first + 7).xyz;
   placed.to_view = transpose(mat3(right, up, spread * (axis_offset.x * right + axis_offset.y * up) - f));
   placed.first_face = floatBitsToUint(hi.w);

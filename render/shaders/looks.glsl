@@ -5,14 +5,23 @@ vec3 from_srgb(uint word) {
   return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c));
 }
 
-// View space with z towards the viewer: a head light, a key light from above left and a fill light from the right; n faces the viewer.
-vec3 lit(vec3 albedo, vec3 n, vec3 v) {
-  const vec3 key = vec3(-0.42, 0.62, 0.66), fill = vec3(0.80, 0.05, 0.59);
-  float sky = 0.5 + 0.5 * n.y;
-  float diffuse = 0.16 + 0.08 * sky + 0.30 * max(dot(n, v), 0.0) + 0.46 * max(dot(n, key), 0.0) + 0.14 * max(dot(n, fill), 0.0);
-  float glint = max(dot(n, normalize(key + v)), 0.0), g2 = glint * glint, g4 = g2 * g2, g8 = g4 * g4, g16 = g8 * g8;
-  return albedo * diffuse + vec3(0.10) * g16 * g16;
+// View space with z towards the viewer: from above left.
+const vec3 kKeyLight = vec3(-0.42, 0.62, 0.66);
+
+// How bright a highlight is, of unit normals and of half vectors of any length.
+float glint(vec3 n, vec3 h) {
+  float g = max(dot(n, normalize(h)), 0.0), g2 = g * g, g4 = g2 * g2, g8 = g4 * g4, g16 = g8 * g8;
+  return g16 * g16;
 }
+
+// A head light, the key light and a fill light from the right; n faces the viewer, and h is between the key light and v.
+vec3 lit(vec3 albedo, vec3 n, vec3 v, vec3 h) {
+  const vec3 fill = vec3(0.80, 0.05, 0.59);
+  float sky = 0.5 + 0.5 * n.y;
+  float diffuse = 0.16 + 0.08 * sky + 0.30 * max(dot(n, v), 0.0) + 0.46 * max(dot(n, kKeyLight), 0.0) + 0.14 * max(dot(n, fill), 0.0);
+  return albedo * diffuse + vec3(0.10) * glint(n, h);
+}
+vec3 lit(vec3 albedo, vec3 n, vec3 v) { return lit(albedo, n, v, kKeyLight + v); }
 
 // Blue below, red above, near white at zero; lightness falls evenly from the middle to both ends.
 vec3 diverging(float t) {

@@ -19,10 +19,10 @@ uniform sampler2D curvatures;  // larger than 1e37 where only the primitive know
 
 #ifdef COLOR
 vec3 picture_color(Surface x, vec2 at) {
-  vec3 v = ray_to_viewer(at);
+  vec3 v = viewer(x, at);
   vec3 n = dot(x.normal, v) < 0.0 ? -x.normal : x.normal;
 #if SHADING == 0
-  vec3 c = lit(from_srgb(only_color != 0u ? only_color : x.color), n, v);
+  vec3 c = lit_at(from_srgb(only_color != 0u ? only_color : x.color), n, x, at);
 #elif SHADING == 1
   vec3 m = to_model * x.normal;
   vec3 c = pow(0.5 + 0.5 * m, vec3(2.2));
@@ -39,9 +39,9 @@ vec3 picture_color(Surface x, vec2 at) {
 #elif SHADING == 6
   vec3 c = zebra(n, v);
 #elif SHADING == 7
-  vec3 c = lit(number_color(x.face), n, v);
+  vec3 c = lit_at(number_color(x.face), n, x, at);
 #else
-  vec3 c = lit(number_color(x.primitive), n, v);
+  vec3 c = lit_at(number_color(x.primitive), n, x, at);
 #endif
 #if SHADING >= 2 && SHADING <= 5
   c *= 0.55 + 0.45 * dot(n, v);

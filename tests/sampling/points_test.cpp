@@ -198,10 +198,9 @@ Model trimmed_plane(const std::vector<std::vector<Vec2>>& polygons) {
       Trim trim;
       trim.edge = static_cast<std::uint32_t>(part.edges.size());
       trim.pcurve.geometry = LineOf<Vec2>{a, d / length(d)};
-      Edge edge;
+      Edge& edge = part.edges.emplace_back();
       edge.t1 = length(d);
       edge.curve = Curve3{LineOf<Vec3>{{a.x, a.y, 0}, Vec3{d.x, d.y, 0} / length(d)}};
-      part.edges.push_back(edge);
       loop.push_back(trim);
       part.faces[0].uv_box.add(a);
     }

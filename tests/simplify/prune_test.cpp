@@ -146,8 +146,7 @@ std::size_t count(const std::vector<bool>& keep) {
 class SlowPruning {
  public:
   SlowPruning(const PartPoints& part, const PruneOptions& options) : options_(options) {
-    for (const DifferentialPoint& p : part.points)
-      rectangles_.push_back(rectangle_of(p, 1 - options.scale_down));
+    for (const DifferentialPoint& p : part.points) rectangles_.push_back(rectangle_of(p, options));
     neighbors_.resize(part.points.size());
     for (const auto& own : neighbor_pairs(part, rectangles_, options).in_grids)
       for (const auto& [a, b] : own) neighbors_[a].insert(b), neighbors_[b].insert(a);
@@ -207,10 +206,10 @@ TEST(Similarity, IsOneOnAPlaneAndFallsWithDisagreement) {
   DifferentialPoint a, b;
   a.half_u = a.half_v = b.half_u = b.half_v = 1;
   b.position = {0.5, 0.2, 0};
-  EXPECT_DOUBLE_EQ(similarity(rectangle_of(a, 1), rectangle_of(b, 1)), 1);
+  EXPECT_DOUBLE_EQ(similarity(rectangle_of(a, {}), rectangle_of(b, {})), 1);
   b.u = {0, std::cos(0.3), std::sin(0.3)};
   b.v = {-1, 0, 0};
-  EXPECT_NEAR(similarity(rectangle_of(a, 1), rectangle_of(b, 1)), std::cos(0.3), 1e-12);
+  EXPECT_NEAR(similarity(rectangle_of(a, {}), rectangle_of(b, {})), std::cos(0.3), 1e-12);
   // On a sphere each predicts the other's normal, to third order in the angle between them.
   a = b = {};
   a.lambda_u = a.lambda_v = b.lambda_u = b.lambda_v = -1;
@@ -218,7 +217,7 @@ TEST(Similarity, IsOneOnAPlaneAndFallsWithDisagreement) {
   b.position = {0, std::sin(0.2), std::cos(0.2)};
   b.u = {1, 0, 0};
   b.v = {0, std::cos(0.2), -std::sin(0.2)};
-  EXPECT_GT(similarity(rectangle_of(a, 1), rectangle_of(b, 1)), 1 - 1e-4);
+  EXPECT_GT(similarity(rectangle_of(a, {}), rectangle_of(b, {})), 1 - 1e-4);
 }
 
 /// Points of the sheet that no kept rectangle holds, seen along the surface's normal there.
@@ -341,6 +340,9 @@ TEST(Prune, OptionsOutOfRangeAreRefused) {
   EXPECT_EQ(points_to_keep({}, options).status().code, StatusCode::invalid_argument);
   options = {};
   options.scale_down = 1;
+  EXPECT_EQ(points_to_keep({}, options).status().code, StatusCode::invalid_argument);
+  options = {};
+  options.slant = -1;
   EXPECT_EQ(points_to_keep({}, options).status().code, StatusCode::invalid_argument);
 }
 
