@@ -181,7 +181,8 @@ void add_dps(const SceneInstance& instance, std::uint32_t index, const ScenePart
   const double depth_scale = length(camera.depth.n);
   for (std::size_t i = 0; i < part.dps.size(); ++i) {
     const DpBounds& dp = part.dps[i];
-    if (out_of_view(dp, camera)) continue;
+    const std::uint32_t color = instance.colors.of(dp.color_face);
+    if (is_hidden(color) || out_of_view(dp, camera)) continue;
     const Facing side = facing(dp, camera);
     if (camera.cull_turned_away && side == Facing::away) continue;
     const double radius_px = footprints.add(camera, dp.center, dp.radius);
@@ -191,8 +192,6 @@ void add_dps(const SceneInstance& instance, std::uint32_t index, const ScenePart
       if (camera.cull_turned_away || side != Facing::unknown) kind |= kOneRootKind;
       if (camera.perspective && depth < kProxyDistance * dp.radius * depth_scale) kind |= kPrismKind;
     }
-    const std::uint32_t color =
-        instance.face_colors.empty() ? instance.color : instance.face_colors[dp.color_face];
     candidates.push_back({sort_key(kind, static_cast<float>(depth)),
                           {dp.record, side == Facing::away ? index | kFromBehindItem : index,
                            instance.first_primitive + static_cast<std::uint32_t>(i) + 1, color},
@@ -331,12 +330,13 @@ void build_draw_list(const Scene::Impl& scene, const ViewRays& view, bool flats,
     const ScenePart& part = scene.parts[instance.part];
     const auto index = static_cast<std::uint32_t>(i);
     list.instances.push_back(instance_texels(instance, part, view, list.start_depth));
-    if (part.primitives == 0) continue;
+    if (part.primitives == 0 || !instance.visible) continue;
     const PartCamera camera = part_camera(instance, part, view, sides);
     if (part.triangles) {
       list.runs.push_back({index, part.first_triangle, part.triangles,
                            instance.first_primitive + static_cast<std::uint32_t>(part.dps.size()),
-                           instance.first_face, instance.color, !instance.face_colors.empty()});
+                           instance.first_face, instance.colors.whole, !instance.colors.faces.empty(),
+                           instance.hidden_faces});
       footprints.add(camera, part.box.center() - part.anchor, part.box.diagonal() / 2);
     }
     if (!part.layer_box.empty())

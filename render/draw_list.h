@@ -26,7 +26,7 @@ inline constexpr std::uint32_t kFromBehindItem = 0x80000000U;
 struct TriangleRun {
   std::uint32_t instance, first_triangle, triangles, first_primitive;
   std::uint32_t first_face, color;  ///< color: of all of them, unless own_colors
-  bool own_colors;
+  bool own_colors, hidden_faces;
 };
 
 /// What a DP's proxy and region are made of; each combination has a program of its own, so that the usual

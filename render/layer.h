@@ -63,7 +63,8 @@ class Layer {
   /// the number of a face ScenePart::face_numbers[face].
   virtual Status upload(Renderer::Impl& renderer, const Scene::Impl& scene, std::uint32_t layer) = 0;
 
-  /// Chooses what this pass draws, on the CPU, and uploads what the choice needs.
+  /// Chooses what this pass draws, on the CPU, and uploads what the choice needs: nothing of placements that
+  /// are not visible.
   virtual Status find(const LayerPass& pass) = 0;
   /// Draws it. Ids and depth are bound, the depth test keeps what is nearer; nothing is culled or blended.
   /// What of that the layer changes (it may draw into pictures of its own too) is put back for the next

@@ -55,8 +55,10 @@ PartCamera part_camera(const SceneInstance& instance, const ScenePart& part, con
   camera.perspective = view.perspective;
   const Vec3 eye = transform_point(instance.to_part, view.eye);
   camera.eye = view.perspective ? eye - part.anchor : -(instance.to_part.linear * view.forward);
-  // From inside a solid, or cut open by the nearest depth, its inner sides can be seen.
-  camera.cull_turned_away = part.closed && !(view.perspective && part.box.contains(eye));
+  // From inside a solid, cut open by the nearest depth, or where faces are hidden, its inner sides can be
+  // seen.
+  camera.cull_turned_away =
+      part.closed && !instance.hidden_faces && !(view.perspective && part.box.contains(eye));
   return camera;
 }
 

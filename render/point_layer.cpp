@@ -169,7 +169,8 @@ Status PointLayer::find(const LayerPass& pass) {
     const SceneInstance& instance = pass.scene.instances[i];
     const ScenePart& part = pass.scene.parts[instance.part];
     const std::uint32_t first = first_[instance.part], count = first_[instance.part + 1] - first;
-    if (count == 0 || out_of_view(part_camera(instance, part, pass.view, sides), part.layer_box, part.anchor))
+    if (count == 0 || !instance.visible ||
+        out_of_view(part_camera(instance, part, pass.view, sides), part.layer_box, part.anchor))
       continue;
     if (count > (1U << kOwnBits) - drawn_)
       return {StatusCode::limit, "more points in view than a picture has numbers for"};

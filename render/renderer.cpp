@@ -32,8 +32,8 @@ Vec2 sample_offset(int index, int count) {
 }
 
 /// Colors that need no more of a surface than its normal and numbers.
-bool drawn_at_once(Shading shading) {
-  return shading == Shading::lit || shading == Shading::zebra || shading == Shading::face ||
+bool drawn_at_once(Shading shading, bool highlights) {
+  return shading == Shading::lit || (shading == Shading::zebra && !highlights) || shading == Shading::face ||
          shading == Shading::primitive;
 }
 
@@ -124,7 +124,7 @@ Result<std::unique_ptr<Scene>> Renderer::upload(const Model& model, const SceneC
     buffer.assign(content.data(), content.size() * sizeof(content[0]), GL_STATIC_DRAW);
   };
   fill(scene->heap, GL_RGBA32UI, package.heap);
-  if (!package.indices.empty() || !scene->layers.empty()) fill(scene->colors, GL_R32UI, package.colors);
+  if (!package.indices.empty() || !scene->layers.empty()) fill(scene->colors, GL_R32UI, scene->color_words());
   if (!package.indices.empty()) {
     fill(scene->vertices, GL_RG32F, package.vertices);
     fill(scene->indices, GL_R32UI, package.indices);
@@ -161,7 +161,8 @@ Status Renderer::Impl::draw_samples(const Scene::Impl& scene, const ViewRays& vi
   Status status = prepare_targets(view.width, view.height,
                                   others | color | exact | (screen ? 1U << kScreenPicture : 0U), format);
   const bool together = options.samples == 1 || !color;
-  const bool at_once = screen && !floats && drawn_at_once(options.shading) && options.lights.empty();
+  const bool at_once =
+      screen && !floats && drawn_at_once(options.shading, scene.highlights) && options.lights.empty();
   if (at_once && status.ok() && !together) prepare_sample(view.width, view.height);
   for (int i = 0; i < options.samples && status.ok() && !together; ++i) {
     const Vec2 offset = sample_offset(i, options.samples);

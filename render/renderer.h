@@ -113,7 +113,13 @@ struct SceneInfo {
   std::size_t drawn_faces = 0;        ///< face instances with anything to draw
 };
 
-/// A model on the GPU. Destroy it with its context current.
+/// What a number of the face picture stands for.
+struct FaceName {
+  std::uint32_t instance = 0;  ///< of the model
+  std::uint32_t face = 0;      ///< of its part: an exact one, or after those a group of its polygons
+};
+
+/// A model on the GPU. Destroy it with its context current; nothing else of it needs that.
 class Scene {
  public:
   class Impl;
@@ -122,6 +128,22 @@ class Scene {
   const SceneInfo& info() const;
   /// Of everything placed, in model space.
   const Box3& box() const;
+  /// `number` is 1 … info().drawn_faces.
+  FaceName face_name(std::uint32_t number) const;
+
+  // How the model is shown, from the next frame on: as its file has it until something else is said. `face`
+  // is an index in the part, or kWhole for all of the placement; what is said of a face goes before what is
+  // said of the whole.
+  static constexpr std::uint32_t kWhole = 0xffffffff;
+  void set_visible(std::uint32_t instance, bool visible, std::uint32_t face = kWhole);
+  /// None: the file's own.
+  void set_color(std::uint32_t instance, const std::optional<Color>& color, std::uint32_t face = kWhole);
+  /// Shown before every color, and through every kind of shading: a selection, or what the pointer is on.
+  void set_highlight(std::uint32_t instance, const std::optional<Color>& color, std::uint32_t face = kWhole);
+  /// Everything visible, colored and placed as at first.
+  void reset_looks();
+  /// Moves a placement; it may turn, shift, mirror and scale, but not flatten.
+  void place(std::uint32_t instance, const Affine3& to_world);
   Impl& impl() { return *impl_; }
   const Impl& impl() const { return *impl_; }
 

@@ -6,20 +6,12 @@
 #include "../nurbs/mesh_triangles.h"
 #include "draw_list.h"
 #include "layer.h"
+#include "renderer_impl.h"
 
 namespace dupin {
 namespace {
 
 constexpr Color kDefaultColor{0.55F, 0.57F, 0.60F, 1};
-
-std::uint32_t srgb8(float linear) {
-  const float c = std::clamp(linear, 0.0F, 1.0F);
-  const float s = c <= 0.0031308F ? 12.92F * c : 1.055F * std::pow(c, 1 / 2.4F) - 0.055F;
-  return static_cast<std::uint32_t>(std::lround(s * 255));
-}
-std::uint32_t packed(const Color& c) {
-  return srgb8(c.r) | srgb8(c.g) << 8 | srgb8(c.b) << 16 | static_cast<std::uint32_t>(255) << 24;
-}
 
 std::array<Vec3, 8> corners(const QuadricDp& dp) {
   std::array<Vec3, 8> result;
@@ -216,38 +208,29 @@ std::optional<Color> own_color(const Part& part, std::size_t face) {
   return group < groups.size() ? groups[group].color : std::nullopt;
 }
 
-/// The columns' lengths bound how a placement stretches directions well enough for proxies.
-double scale_ratio(const Mat3& m) {
-  const double a = length(m.x), b = length(m.y), c = length(m.z);
-  return std::max({a, b, c}) / std::max(std::min({a, b, c}), 1e-300);
-}
-
 void place(const Model& model, const Instance& instance, const std::vector<std::vector<bool>>& drawn,
-           Scene::Impl& scene, ScenePackage& package) {
+           Scene::Impl& scene) {
   const Part& source = model.parts[instance.part];
   const ScenePart& part = scene.parts[instance.part];
   SceneInstance placed;
   placed.part = instance.part;
-  placed.to_world = instance.to_world;
-  placed.to_part = inverse(instance.to_world);
+  place(instance.to_world, placed);
   placed.first_face = static_cast<std::uint32_t>(scene.faces.size());
   placed.first_primitive = static_cast<std::uint32_t>(scene.info.placed_primitives);
-  placed.scale_ratio = scale_ratio(instance.to_world.linear);
   const Color own = instance.color ? *instance.color : source.color ? *source.color : kDefaultColor;
-  placed.color = packed(own);
+  FaceColors& colors = placed.file_colors;
+  colors.whole = srgb_word(own);
   const auto index = static_cast<std::uint32_t>(scene.instances.size());
   const std::vector<bool>& faces = drawn[instance.part];
   bool own_colors = false;
   for (std::size_t f = 0; f < faces.size(); ++f) own_colors = own_colors || own_color(source, f);
   for (std::size_t f = 0; own_colors && f < faces.size(); ++f) {
     const std::optional<Color> color = own_color(source, f);
-    placed.face_colors.push_back(color ? packed(*color) : placed.color);
+    colors.faces.push_back(color ? srgb_word(*color) : colors.whole);
   }
+  placed.colors = colors;
   for (std::size_t f = 0; f < faces.size(); ++f)
-    if (faces[f]) {
-      scene.faces.push_back({index, static_cast<std::uint32_t>(f)});
-      package.colors.push_back(placed.face_colors.empty() ? placed.color : placed.face_colors[f]);
-    }
+    if (faces[f]) scene.faces.push_back({index, static_cast<std::uint32_t>(f)});
   scene.info.placed_primitives += part.primitives;
   scene.box.add(transform_box(instance.to_world, part.box));
   scene.instances.push_back(std::move(placed));
@@ -300,21 +283,12 @@ Status pack_scene(const Model& model, const DpScene* dps, Scene::Impl& scene, Sc
     scene.info.primitives += part.primitives;
     scene.parts.push_back(std::move(part));
   }
-  for (const Instance& instance : model.instances) place(model, instance, drawn, scene, package);
+  for (const Instance& instance : model.instances) place(model, instance, drawn, scene);
   scene.info.drawn_faces = scene.faces.size();
   scene.info.bytes = package.heap.size() * sizeof(Texel) + package.vertices.size() * 4 +
                      package.indices.size() * 4 + package.triangle_faces.size() * 4;
   for (const auto& layer : scene.layers) scene.info.bytes += layer->bytes();
   return {};
-}
-
-Scene::Scene(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-Scene::~Scene() = default;
-const SceneInfo& Scene::info() const {
-  return impl_->info;
-}
-const Box3& Scene::box() const {
-  return impl_->box;
 }
 
 }  // namespace dupin

@@ -3,6 +3,8 @@
 #define DUPIN_RENDER_SCENE_H
 
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <vector>
 
 #include "gl_objects.h"
@@ -44,19 +46,41 @@ struct ScenePart {
   std::vector<std::uint32_t> face_numbers;    ///< per face of the part: its number among the drawn ones
 };
 
+/// A color's word is sRGB of 8 bits each, r lowest; the highest byte says more of the face.
+inline constexpr std::uint32_t kPlainColor = 0xff000000, kHighlightColor = 0xfe000000, kHiddenColor = 0;
+constexpr bool is_hidden(std::uint32_t color) {
+  return color >> 24 == 0;
+}
+constexpr bool is_highlighted(std::uint32_t color) {
+  return color >> 24 == 0xfe;
+}
+
+struct FaceColors {
+  std::uint32_t whole = kPlainColor;  ///< of faces that have none of their own
+  std::vector<std::uint32_t> faces;   ///< per face of the part; empty: all `whole`
+  std::uint32_t of(std::size_t face) const { return faces.empty() ? whole : faces[face]; }
+};
+
 struct SceneInstance {
   std::uint32_t part = 0;
   Affine3 to_world, to_part;
   std::uint32_t first_face = 0;       ///< drawn face instances before it
   std::uint32_t first_primitive = 0;  ///< primitives before it
-  std::uint32_t color = 0;            ///< of faces that have none of their own (sRGB, 8 bits each, r lowest)
-  std::vector<std::uint32_t> face_colors;  ///< per face of the part; empty: all `color`
-  double scale_ratio = 1;                  ///< largest over smallest scale
+  FaceColors colors;                  ///< as they are shown
+  FaceColors file_colors;
+  bool visible = true;        ///< any of it is; what is not is not drawn, and that holds for layers too
+  bool hidden_faces = false;  ///< some are
+  double scale_ratio = 1;     ///< largest over smallest scale
 };
 
-/// Which face of which instance a number of the face AOV is; index 0 is number 1.
-struct FaceName {
-  std::uint32_t instance = 0, face = 0;
+/// What a host asked to be shown differently.
+struct Look {
+  std::optional<bool> visible;
+  std::optional<Color> color, highlight;
+};
+struct InstanceLook {
+  Look whole;
+  std::map<std::uint32_t, Look> faces;
 };
 
 class Layer;
@@ -66,24 +90,35 @@ class Scene::Impl {
   std::shared_ptr<const Gl> gl;  ///< outlives the buffers below
   std::vector<ScenePart> parts;
   std::vector<SceneInstance> instances;
-  std::vector<FaceName> faces;
+  std::vector<FaceName> faces;      ///< index 0 is number 1
+  std::vector<InstanceLook> looks;  ///< per instance; empty: none asks for anything
+  bool highlights = false;          ///< any
   Box3 box;
   SceneInfo info;
-  TexelBuffer heap;            ///< the DPs' records (RGBA32UI)
-  TexelBuffer vertices;        ///< 6 floats each, as RG32F
-  TexelBuffer indices;         ///< R32UI, also the element array
-  TexelBuffer triangle_faces;  ///< R32UI: the drawn face's number in its part
-  TexelBuffer colors;          ///< R32UI: of every drawn face instance; for triangles
+  TexelBuffer heap;                     ///< the DPs' records (RGBA32UI)
+  TexelBuffer vertices;                 ///< 6 floats each, as RG32F
+  TexelBuffer indices;                  ///< R32UI, also the element array
+  TexelBuffer triangle_faces;           ///< R32UI: the drawn face's number in its part
+  mutable TexelBuffer colors;           ///< R32UI: of every drawn face instance; for triangles and layers
+  mutable bool colors_changed = false;  ///< since they were uploaded
   GlVertexArray mesh_array;
   std::vector<std::shared_ptr<Layer>> layers;  ///< their own buffers go before `gl` does
+
+  Look& look(std::uint32_t instance, std::uint32_t face);
+  /// After a change of the instance's look.
+  void apply_look(std::uint32_t instance);
+  /// Of every drawn face instance.
+  std::vector<std::uint32_t> color_words() const;
 };
+
+void place(const Affine3& to_world, SceneInstance& instance);
 
 /// What does not need a context: everything of the Impl but its buffers, with the bytes to put into them; its
 /// layers are there already.
 struct ScenePackage {
   std::vector<Texel> heap;
   std::vector<float> vertices;
-  std::vector<std::uint32_t> indices, triangle_faces, colors;
+  std::vector<std::uint32_t> indices, triangle_faces;
 };
 Status pack_scene(const Model& model, const DpScene* dps, Scene::Impl& scene, ScenePackage& package);
 

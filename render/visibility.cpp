@@ -168,7 +168,8 @@ Status Renderer::Impl::draw_triangles(const Pass& pass) {
     gl->Uniform1i(uniform("first_triangle"), static_cast<GLint>(run.first_triangle));
     gl->Uniform1i(uniform("first_face"), static_cast<GLint>(run.first_face));
     gl->Uniform1ui(uniform("first_primitive"), run.first_primitive);
-    const Color color = pass.options->color.value_or(linear_color(run.color));
+    const bool own = !pass.options->color || is_highlighted(run.color);
+    const Color color = own ? linear_color(run.color) : *pass.options->color;
     gl->Uniform3f(uniform("run_color"), color.r, color.g, color.b);
     gl->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * run.triangles), GL_UNSIGNED_INT,
                      reinterpret_cast<const void*>(std::size_t{12} * run.first_triangle));
@@ -180,18 +181,22 @@ Status Renderer::Impl::draw_triangles(const Pass& pass) {
 /// Colors by face cost every pixel a search for its own; most parts have one color.
 Status Renderer::Impl::use_triangle_program(const Pass& pass, const TriangleRun& run, GLuint& name) {
   const bool numbers = pass.options->shading == Shading::face || pass.options->shading == Shading::primitive;
-  const bool own_colors = pass.at_once && ((run.own_colors && !pass.options->color) || numbers);
+  const bool own_colors =
+      pass.at_once && ((run.own_colors && (!pass.options->color || pass.scene->highlights)) || numbers);
   const Extras extras{false, pass.at_once ? static_cast<int>(pass.options->shading) : -1};
   ProgramText text{{"proxy.glsl", "triangle.vert"}, {"triangle.frag"}, {}, {}, {{"colors", kHeapUnit}}};
   extras.add_to(text);
   if (own_colors) text.defines.push_back("OWN_COLORS");
-  const auto built = program(extras.key(own_colors ? "triangles of own colors" : "triangles"), text);
+  if (run.hidden_faces) text.defines.push_back("HIDDEN_FACES");
+  const auto built = program(extras.key(std::string("triangles") + (own_colors ? " of own colors" : "") +
+                                        (run.hidden_faces ? " some hidden" : "")),
+                             text);
   if (!built) return built.status();
   if (*built == name) return {};
   name = *built;
   set_view(name, pass.view);
   set_looks(name, pass);
-  if (own_colors) {
+  if (own_colors || run.hidden_faces) {
     pass.scene->triangle_faces.bind(kTriangleFacesUnit);
     pass.scene->colors.bind(kHeapUnit);
   }
@@ -255,6 +260,11 @@ Status Renderer::Impl::draw_visibility(const Pass& pass) {
 }
 
 Status Renderer::Impl::run(const Pass& pass) {
+  if (pass.scene->colors_changed && pass.scene->colors.bytes() > 0) {
+    const std::vector<std::uint32_t> words = pass.scene->color_words();
+    pass.scene->colors.assign(words.data(), words.size() * 4, GL_STATIC_DRAW);
+  }
+  pass.scene->colors_changed = false;
   build_draw_list(*pass.scene, pass.view, flats_, list_);
   view_spread_ = pass.view.perspective ? 1.0F : 0.0F;
   upload_list(*pass.scene);

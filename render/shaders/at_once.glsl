@@ -11,12 +11,11 @@ vec3 to_view(vec3 n, vec3 p, vec3 q, vec3 f) {
 }
 
 vec3 own_color(uint color, uint face, uint primitive) {
-#if SHADING == 7
-  return number_color(face);
-#elif SHADING == 8
-  return number_color(primitive);
+#if SHADING == 7 || SHADING == 8
+  vec3 c = number_color(SHADING == 7 ? face : primitive);
+  return is_highlighted(color) ? mix(c, from_srgb(color), kHighlight) : c;
 #else
-  return from_srgb(only_color != 0u ? only_color : color);
+  return from_srgb(only_color != 0u && !is_highlighted(color) ? only_color : color);
 #endif
 }
 

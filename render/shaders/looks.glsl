@@ -5,6 +5,10 @@ vec3 from_srgb(uint word) {
   return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c));
 }
 
+// What a host has highlighted; the color is then that to show it by.
+bool is_highlighted(uint color) { return color >> 24 == 0xfeu; }
+const float kHighlight = 0.6;  // how much of it is seen where colors show something else
+
 // View space with z towards the viewer: from above left.
 const vec3 kKeyLight = vec3(-0.42, 0.62, 0.66);
 

@@ -22,7 +22,7 @@ vec3 picture_color(Surface x, vec2 at) {
   vec3 v = viewer(x, at);
   vec3 n = dot(x.normal, v) < 0.0 ? -x.normal : x.normal;
 #if SHADING == 0
-  vec3 c = lit_at(from_srgb(only_color != 0u ? only_color : x.color), n, x, at);
+  vec3 c = lit_at(from_srgb(only_color != 0u && !is_highlighted(x.color) ? only_color : x.color), n, x, at);
 #elif SHADING == 1
   vec3 m = to_model * x.normal;
   vec3 c = pow(0.5 + 0.5 * m, vec3(2.2));
@@ -45,6 +45,9 @@ vec3 picture_color(Surface x, vec2 at) {
 #endif
 #if SHADING >= 2 && SHADING <= 5
   c *= 0.55 + 0.45 * dot(n, v);
+#endif
+#if SHADING > 0
+  if (is_highlighted(x.color)) c = mix(c, lit(from_srgb(x.color), n, v), kHighlight);
 #endif
   return mix(c, 0.06 * c, 0.9 * x.edge);
 }

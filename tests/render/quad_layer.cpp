@@ -91,6 +91,7 @@ class QuadLayer : public Layer {
     drawn_ = 0;
     for (std::uint32_t i = 0; i < pass.scene.instances.size(); ++i) {
       const SceneInstance& instance = pass.scene.instances[i];
+      if (!instance.visible) continue;
       const auto first =
           std::find_if(quads_.begin(), quads_.end(), [&](const Quad& q) { return q.part == instance.part; });
       const auto count =
