@@ -110,7 +110,7 @@ struct SceneInfo {
   std::size_t placed_primitives = 0;  ///< counting every placement
   std::size_t bytes = 0;              ///< uploaded for geometry
   std::size_t clips = 0;              ///< planes, lines, arcs and ellipses that bound the stored DPs
-  std::size_t drawn_faces = 0;        ///< face instances with anything to draw
+  std::size_t drawn_faces = 0;  ///< face instances; those out of the picture count, those left out do not
 };
 
 /// What a number of the face picture stands for.

@@ -43,7 +43,7 @@ std::size_t piece_count(const QuadricDp& dp) {
   return std::size_t{dp.planes} + dp.lines + dp.arcs + dp.ellipses;
 }
 
-/// Numbers the faces that have something to draw, in the part's order; the others get none.
+/// Numbers the faces that are drawn, in the part's order; the others get none.
 void number_faces(const std::vector<bool>& drawn, ScenePart& part) {
   part.face_numbers.assign(drawn.size(), 0);
   for (std::size_t i = 0; i < drawn.size(); ++i)
@@ -141,7 +141,8 @@ void pack_mesh(const TriangleMesh& mesh, std::size_t first_face, ScenePart& part
 
 /// What there is of one part.
 struct PartContent {
-  const PartDps* dps = nullptr;
+  const PartDps* dps = nullptr;       ///< not empty
+  std::vector<std::uint32_t> unseen;  ///< faces that are drawn with nothing to see
   const TriangleMesh* mesh = nullptr;
   const PolygonMesh* polygons = nullptr;  ///< drawn as triangles
   std::vector<LayerPart> layers;
@@ -157,13 +158,15 @@ PartContent content_of(const Model& model, std::size_t index, const DpScene* dps
   }
   const bool by_dps = dps && !source.faces.empty();
   if (by_dps && !dps->parts[index].dps.empty()) content.dps = &dps->parts[index];
+  if (by_dps) content.unseen = dps->parts[index].out_of_picture;
   if (!by_dps && !by_layers && !source.mesh.triangles.empty()) content.mesh = &source.mesh;
   if (!by_layers && source.polygons.polygon_count() > 0) content.polygons = &source.polygons;
   return content;
 }
 
-/// Which faces of the part anything is drawn of; the groups of its polygons come after its exact ones. What
-/// is drawn of a part without faces is one face.
+/// Which faces of the part are drawn, with something to see of them or not, so that their numbers do not
+/// depend on the camera; the groups of its polygons come after its exact ones. What is drawn of a part
+/// without faces is one face.
 Status mark_faces(const Part& source, const PartContent& content, std::vector<bool>& drawn) {
   bool valid = true;
   const auto mark = [&](std::uint32_t face) {
@@ -171,6 +174,7 @@ Status mark_faces(const Part& source, const PartContent& content, std::vector<bo
     if (face < drawn.size()) drawn[face] = true;
   };
   drawn.assign(std::max<std::size_t>(1, face_count(source)), false);
+  for (const std::uint32_t face : content.unseen) mark(face);
   if (content.dps)
     for (const QuadricDp& dp : content.dps->dps) mark(dp.face);
   if (content.mesh)

@@ -118,7 +118,9 @@ struct PartDps {
   std::vector<ArcPiece> arcs;
   std::vector<EllipsePiece> ellipses;
   std::vector<SkippedFace> skipped;  ///< faces that could not be made into DPs
-  double bound_px = 0;               ///< see DpScene
+  /// Faces without a DP because nothing of them is in the camera's picture: drawn, with nothing to see.
+  std::vector<std::uint32_t> out_of_picture;
+  double bound_px = 0;  ///< see DpScene
 };
 
 /// Appends another part's (or face's) DPs and pieces.

@@ -222,6 +222,8 @@ Result<DpScene> sample_quadric_dps(const Model& model, const SamplingOptions& op
     PartDps& out = scene.parts[p];
     for (std::size_t i = 0; i < faces.size(); ++i) {
       append(faces[i].dps, out);
+      if (faces[i].failure.empty() && faces[i].dps.dps.empty())
+        out.out_of_picture.push_back(static_cast<std::uint32_t>(i));
       if (faces[i].failure.empty()) continue;
       const std::string& name = part.faces[i].name;
       out.skipped.push_back(

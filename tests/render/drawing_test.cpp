@@ -183,5 +183,37 @@ TEST(Drawing, OneMicrometreLooksTheSame) {
   expect_same(d);
 }
 
+/// Coordinates of the part itself, in a file that has them so, rather than of its placement.
+struct Size {
+  const char* name;
+  double scale;
+  Vec3 shift;
+};
+class AnySize : public ::testing::TestWithParam<Size> {};
+
+TEST_P(AnySize, LooksTheSame) {
+  const auto [name, scale, shift] = GetParam();
+  HandMade made = moved(every_kind(), scale, shift);
+  made.place({});
+  for (const bool parallel : {false, true}) {
+    Camera camera = small_camera();
+    camera.orthographic = parallel;
+    camera = fitted(made, "iso", camera);
+    const Differences d = draw_and_compare(made, camera);
+    EXPECT_GT(d.covered, d.pixels / 50);
+    EXPECT_LE(d.coverage, 2);
+    EXPECT_LE(d.depth_px, kDepthPx);
+    EXPECT_LE(d.normal_degrees, kNormalDegrees);
+    EXPECT_LE(d.curvature, kCurvature);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Drawing, AnySize,
+                         ::testing::Values(Size{"TenKilometresAway", 1, {1e7, -2e7, 5e6}},
+                                           Size{"OneMicrometre", 5e-4, {}},
+                                           Size{"OneMicrometreAMetreAway", 5e-4, {1000, 0, -300}},
+                                           Size{"AHundredKilometres", 5e7, {}}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
 }  // namespace
 }  // namespace dupin::testing

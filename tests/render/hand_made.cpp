@@ -158,4 +158,26 @@ HandMade every_kind() {
   return scene;
 }
 
+HandMade moved(HandMade scene, double scale, const Vec3& shift) {
+  PartDps& part = scene.pieces();
+  for (QuadricDp& dp : part.dps) {
+    dp.origin = dp.origin * scale + shift;
+    for (double* curvature : {&dp.lambda_u, &dp.lambda_v, &dp.a, &dp.b, &dp.c}) *curvature /= scale;
+    for (Vec2& corner : dp.footprint) corner = corner * scale;
+    dp.reference = dp.reference * scale;
+    dp.z_lo *= scale, dp.z_hi *= scale;
+  }
+  for (ClipPlane& plane : part.planes) plane.d *= scale;
+  for (LinePiece& line : part.lines) line.p0 = line.p0 * scale, line.p1 = line.p1 * scale;
+  for (ArcPiece& arc : part.arcs) arc.p0 = arc.p0 * scale, arc.p1 = arc.p1 * scale, arc.p2 = arc.p2 * scale;
+  for (EllipsePiece& e : part.ellipses) {
+    e.center = e.center * scale;
+    e.mxx /= scale, e.mxy /= scale, e.myy /= scale;
+  }
+  Box3& box = scene.model.parts[0].box;
+  box.lo = box.lo * scale + shift;
+  box.hi = box.hi * scale + shift;
+  return scene;
+}
+
 }  // namespace dupin::testing

@@ -39,6 +39,9 @@ Affine3 rigid(const Vec3& axis, double angle, const Vec3& shift);
 /// sphere, a cone, a saddle.
 HandMade every_kind();
 
+/// The scene with its part's own coordinates scaled about the origin, then shifted.
+HandMade moved(HandMade scene, double scale, const Vec3& shift);
+
 }  // namespace dupin::testing
 
 #endif
