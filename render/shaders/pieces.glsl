@@ -28,6 +28,23 @@ void meet_segment(inout Region at, float side, vec2 from_a, vec2 ab) {
 }
 #endif
 
+#if defined(EDGES) && (defined(ARCS) || defined(FLAT_ARCS))
+// The conic goes on beyond the arc: what counts is in or near the triangle. One that is hardly a few pixels high is a parabola over its
+// chord: the conic's other parts are near.
+void meet_arc(inout Region at, vec2 here, vec2 p0, vec2 e1, float side, float area, float inside, float sharp, float g, vec2 gradient) {
+  vec2 normal = vec2(-e1.y, e1.x), slope = vec2(dot(normal, at.px.xy), dot(normal, at.py.xy)),
+       run = vec2(dot(e1, at.px.xy), dot(e1, at.py.xy));
+  float steep = max(dot(slope, slope), 1e-37);
+  if (area * area > 9.0 * steep) {
+    if (min(inside, -side) >= -0.02 * area) meet_edge(at, g, vec3(gradient, 0.0));
+    return;
+  }
+  float length2 = max(dot(e1, e1), 1e-37), along = dot(e1, p0 - here), beyond = max(max(-along, along - length2), 0.0);
+  float t = clamp(along / length2, 0.0, 1.0), w = 0.5 * sqrt(sharp), off = side + area * (w / (1.0 + w)) * 4.0 * t * (1.0 - t);
+  at.nearest = min(at.nearest, max(off * off / steep, beyond * beyond / max(dot(run, run), 1e-37)));
+}
+#endif
+
 #ifdef PLANES
 void test_planes(inout Region at, int texel, int planes, int features) {
   for (int i = 0; i < planes; ++i) {
@@ -78,8 +95,7 @@ void test_arc(inout Region at, vec2 here, vec4 a01, vec4 a2w, bool feature) {
   vec2 turned = sharp * (e0 * b2 + e2 * b0) + 2.0 * side * e1, gradient = vec2(-turned.y, turned.x);
   at.near = at.near || (bulge && g * g < at.rounding * at.rounding * dot(gradient, gradient));
 #ifdef EDGES
-  // On the arc's side of the chord, and not past its ends by more than a little.
-  if (feature && min(min(b0, b2), -side) >= -0.02 * cross2(e0, e1)) meet_edge(at, g, vec3(gradient, 0.0));
+  if (feature) meet_arc(at, here, p0, e1, side, cross2(e0, e1), min(b0, b2), sharp, g, gradient);
 #endif
 }
 #endif

@@ -1,5 +1,6 @@
-// Drawing into a host's framebuffer: what is nearer hides the other, both ways, whatever the host's camera and its conventions of depth. The
-// host's own scene is a wall at one depth, of which the viewport's left half is left out.
+// Drawing into a host's framebuffer: what is nearer hides the other, both ways, whatever the host's camera
+// and its conventions of depth. The host's own scene is a wall at one depth, of which the viewport's left
+// half is left out.
 #include <GL/glcorearb.h>
 
 #include <cstring>
@@ -16,21 +17,24 @@ constexpr double kNear = 1, kFar = 30;
 struct HostCase {
   const char* name;
   bool perspective = true;
-  double wall = 10;            ///< its depth; the sphere is seen between 8 and 10
-  bool reversed = false;       ///< near is 1 in the window, and what is greater is nearer
-  bool zero_to_one = false;    ///< clip space
-  double range[2] = {0, 1};    ///< glDepthRange
-  double off_x = 0, off_y = 0; ///< of the principal point, in half pictures
-  int x = 0, y = 0;            ///< the viewport's place
+  double wall = 10;             ///< its depth; the sphere is seen between 8 and 10
+  bool reversed = false;        ///< near is 1 in the window, and what is greater is nearer
+  bool zero_to_one = false;     ///< clip space
+  double range[2] = {0, 1};     ///< glDepthRange
+  double off_x = 0, off_y = 0;  ///< of the principal point, in half pictures
+  int x = 0, y = 0;             ///< the viewport's place
   int samples = 1;
 };
 
 class HostPicture {
  public:
   HostPicture(const Context& context, const HostCase& c) : context_(context), case_(c) {
-    load(bind_framebuffer_, "glBindFramebuffer"), load(clear_color_, "glClearColor"), load(clear_depth_, "glClearDepth");
-    load(clear_, "glClear"), load(enable_, "glEnable"), load(disable_, "glDisable"), load(scissor_, "glScissor");
-    load(depth_func_, "glDepthFunc"), load(depth_range_, "glDepthRange"), load(clip_control_, "glClipControl");
+    load(bind_framebuffer_, "glBindFramebuffer"), load(clear_color_, "glClearColor"),
+        load(clear_depth_, "glClearDepth");
+    load(clear_, "glClear"), load(enable_, "glEnable"), load(disable_, "glDisable"),
+        load(scissor_, "glScissor");
+    load(depth_func_, "glDepthFunc"), load(depth_range_, "glDepthRange"),
+        load(clip_control_, "glClipControl");
     load(read_pixels_, "glReadPixels");
     make_framebuffer();
   }
@@ -83,7 +87,8 @@ class HostPicture {
   }
   std::array<double, 16> projection() const {
     // Depth near → z0, far → z1 in clip space, those two turned round if reversed.
-    const double lowest = case_.zero_to_one ? 0 : -1, z0 = case_.reversed ? 1 : lowest, z1 = case_.reversed ? lowest : 1;
+    const double lowest = case_.zero_to_one ? 0 : -1, z0 = case_.reversed ? 1 : lowest,
+                 z1 = case_.reversed ? lowest : 1;
     std::array<double, 16> p{};
     const double aspect = static_cast<double>(kWidth) / kHeight, f = 2.5;
     if (case_.perspective) {
@@ -113,7 +118,8 @@ class HostPicture {
     gen(1, &framebuffer_);
     gen_buffers(2, buffers);
     bind_framebuffer_(GL_FRAMEBUFFER, framebuffer_);
-    const GLenum formats[] = {GL_RGBA8, GL_DEPTH_COMPONENT32F}, places[] = {GL_COLOR_ATTACHMENT0, GL_DEPTH_ATTACHMENT};
+    const GLenum formats[] = {GL_RGBA8, GL_DEPTH_COMPONENT32F},
+                 places[] = {GL_COLOR_ATTACHMENT0, GL_DEPTH_ATTACHMENT};
     for (int i = 0; i < 2; ++i) {
       bind(GL_RENDERBUFFER, buffers[i]);
       storage(GL_RENDERBUFFER, formats[i], 200, 150);
@@ -146,8 +152,8 @@ class HostPicture {
   PFNGLREADPIXELSPROC read_pixels_ = nullptr;
 };
 
-/// The depth at which a pixel (bottom row first) sees the sphere; 0 where it does not. `margin`: of the ray from the outline, in units of
-/// the radius.
+/// The depth at which a pixel (bottom row first) sees the sphere; 0 where it does not. `margin`: of the ray
+/// from the outline, in units of the radius.
 double sphere_depth(const HostView& host, int column, int row, double& margin) {
   const auto& p = host.projection;
   const double x = (column + 0.5) * 2 / kWidth - 1, y = (row + 0.5) * 2 / kHeight - 1;
@@ -212,17 +218,19 @@ TEST_P(Hosts, WhatIsNearerHidesTheOther) {
 
 INSTANTIATE_TEST_SUITE_P(
     Drawing, Hosts,
-    ::testing::Values(HostCase{.name = "WallBehind", .wall = 20}, HostCase{.name = "WallBefore", .wall = 5},
-                      HostCase{.name = "WallThrough", .wall = 8.8},
-                      HostCase{.name = "Parallel", .perspective = false, .wall = 8.8},
-                      HostCase{.name = "ParallelReversed", .perspective = false, .wall = 5, .reversed = true},
-                      HostCase{.name = "Reversed", .wall = 8.8, .reversed = true, .zero_to_one = true},
-                      HostCase{.name = "ZeroToOne", .wall = 8.8, .zero_to_one = true},
-                      HostCase{.name = "DepthRange", .wall = 8.8, .range = {0.2, 0.7}},
-                      HostCase{.name = "OffCentre", .wall = 8.8, .off_x = 0.3, .off_y = -0.2},
-                      HostCase{.name = "ParallelOffCentre", .perspective = false, .wall = 8.8, .off_x = -0.2, .off_y = 0.25},
-                      HostCase{.name = "PartOfTheFramebuffer", .wall = 8.8, .x = 37, .y = 21},
-                      HostCase{.name = "SeveralSamples", .wall = 8.8, .samples = 4}),
+    ::testing::Values(
+        HostCase{.name = "WallBehind", .wall = 20}, HostCase{.name = "WallBefore", .wall = 5},
+        HostCase{.name = "WallThrough", .wall = 8.8},
+        HostCase{.name = "Parallel", .perspective = false, .wall = 8.8},
+        HostCase{.name = "ParallelReversed", .perspective = false, .wall = 5, .reversed = true},
+        HostCase{.name = "Reversed", .wall = 8.8, .reversed = true, .zero_to_one = true},
+        HostCase{.name = "ZeroToOne", .wall = 8.8, .zero_to_one = true},
+        HostCase{.name = "DepthRange", .wall = 8.8, .range = {0.2, 0.7}},
+        HostCase{.name = "OffCentre", .wall = 8.8, .off_x = 0.3, .off_y = -0.2},
+        HostCase{
+            .name = "ParallelOffCentre", .perspective = false, .wall = 8.8, .off_x = -0.2, .off_y = 0.25},
+        HostCase{.name = "PartOfTheFramebuffer", .wall = 8.8, .x = 37, .y = 21},
+        HostCase{.name = "SeveralSamples", .wall = 8.8, .samples = 4}),
     [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace

@@ -1,7 +1,7 @@
-// A camera a thousand times closer, on the fillets and spline faces of models: what is drawn keeps to the bounds asked for at every pixel, and
-// shows no facet.
-#include "../cad_import/files.h"
+// A camera a thousand times closer, on the fillets and spline faces of models: what is drawn keeps to the
+// bounds asked for at every pixel, and shows no facet.
 #include "../../sampling/sampler.h"
+#include "../cad_import/files.h"
 #include "device.h"
 
 namespace dupin::testing {
