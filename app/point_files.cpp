@@ -47,7 +47,7 @@ class Output {
 
 /// Numbers the part's faces that have points, as a scene does.
 std::vector<std::uint32_t> face_numbers(const Part& part, const PartPoints& points, std::uint32_t& drawn) {
-  std::vector<bool> used(std::max<std::size_t>(part.faces.size(), 1), false);
+  std::vector<bool> used(std::max<std::size_t>(face_count(part), 1), false);
   for (const DifferentialPoint& p : points.points) used[p.face] = true;
   std::vector<std::uint32_t> numbers(used.size(), 0);
   drawn = 0;
@@ -96,7 +96,10 @@ std::array<std::uint8_t, 3> srgb(const Color& color) {
 /// As a scene colours a face: its own colour, or the instance's, or the part's, or the default.
 DpsColors colors_of(const Part& part, const Instance& instance, std::uint32_t face) {
   DpsColors colors;
-  const std::optional<Color> own = face < part.faces.size() ? part.faces[face].color : std::nullopt;
+  const std::size_t group = face - part.faces.size();
+  const std::optional<Color> own = face < part.faces.size()              ? part.faces[face].color
+                                   : group < part.polygons.groups.size() ? part.polygons.groups[group].color
+                                                                         : std::nullopt;
   const std::optional<Color>& color = own ? own : instance.color ? instance.color : part.color;
   if (color) colors.diffuse = srgb(*color);
   return colors;
@@ -157,7 +160,7 @@ Status write_points_dps(const std::string& path, const Model& model, const Point
   for (std::uint32_t i = 0; i < model.instances.size(); ++i) {
     const Instance& instance = model.instances[i];
     const Part& part = model.parts[instance.part];
-    const std::size_t faces = std::max<std::size_t>(part.faces.size(), 1);
+    const std::size_t faces = std::max<std::size_t>(face_count(part), 1);
     for (std::uint32_t face = 0; face < faces; ++face) {
       const DpsColors colors = colors_of(part, instance, face);
       auto group =

@@ -27,6 +27,8 @@ PointSamplingOptions PointOptions::sampling(const Model& model) const {
   result.spacing = spacing;
   result.epsilon = epsilon;
   result.delta = delta > 0 ? delta : kDefaultDelta * diagonal;
+  if (mesh_curvature == "taubin") result.mesh.curvature = MeshCurvature::taubin;
+  result.mesh.delta = delta;
   result.border = border;
   result.tolerance = tolerance > 0 ? tolerance : kDefaultPointTolerance * diagonal;
   return result;
@@ -67,7 +69,8 @@ void add_point_options(CLI::App& command, PointOptions& options, bool tolerance)
       ->group(group);
   command
       .add_option("--delta", options.delta,
-                  "Largest half-width of a rectangle, in model units (default: 2 % of the diagonal)")
+                  "Largest half-width of a rectangle, in model units (default: 2 % of the diagonal; for "
+                  "meshes as far as edges ask)")
       ->check(positive)
       ->type_name("D")
       ->group(group);
@@ -85,6 +88,13 @@ void add_point_options(CLI::App& command, PointOptions& options, bool tolerance)
         ->check(positive)
         ->type_name("T")
         ->group(group);
+  command
+      .add_option(
+          "--mesh-curvature", options.mesh_curvature,
+          "At vertices of meshes: fitted to the edges' normal curvatures, or by Taubin's tensor as published")
+      ->check(CLI::IsMember({"fitted", "taubin"}))
+      ->capture_default_str()
+      ->group(group);
   command.add_flag("--simplify", options.simplify, "Leave out points whose neighbours cover what they do")
       ->group(group);
   command

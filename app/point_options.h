@@ -18,6 +18,7 @@ struct PointOptions {
   int grid = 0;
   double spacing = 0, epsilon = 0.012, delta = 0, border = 0;
   double tolerance = 0;
+  std::string mesh_curvature = "fitted";
   bool simplify = false;
   std::string simplification = "exact";
 
@@ -25,7 +26,7 @@ struct PointOptions {
   Status check() const;
   bool given() const {
     return !method.empty() || grid || spacing > 0 || epsilon != 0.012 || delta > 0 || border > 0 ||
-           tolerance > 0 || simplify;
+           tolerance > 0 || simplify || mesh_curvature != "fitted";
   }
   /// Lengths that were not given follow from the model's diagonal.
   PointSamplingOptions sampling(const Model& model) const;

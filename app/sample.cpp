@@ -113,6 +113,7 @@ class SampleJob {
     json["epsilon"] = certified ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(sampling_.epsilon);
     json["delta"] = certified ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(sampling_.delta);
     json["faces"] = to_json(faces_);
+    json["notes"] = made_.scene.notes;
     json["points"] = {{"before", made_.before}, {"after", made_.scene.count()}, {"written", written}};
     json["bytes"] = {{"file", bytes_},
                      {"raw", made_.scene.count() * kRawBytes},

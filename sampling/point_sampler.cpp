@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "../core/parallel.h"
+#include "mesh_points.h"
 #include "point_faces.h"
 #include "sampler.h"
 
@@ -163,6 +164,30 @@ Result<PointScene> certified_points(const Model& model, const PointSamplingOptio
   return scene;
 }
 
+std::string group_name(const Part& part, std::size_t group) {
+  const std::vector<MeshGroup>& groups = part.polygons.groups;
+  if (group < groups.size() && !groups[group].name.empty()) return groups[group].name;
+  return "mesh" + (part.name.empty() ? std::string{} : " of " + part.name);
+}
+
+/// Lists the groups of the part's polygons that no point is of.
+void list_skipped_groups(const Part& part, const char* reason, PartPoints& out) {
+  std::vector<bool> sampled(face_count(part), false);
+  for (const DifferentialPoint& p : out.points) sampled[p.face] = true;
+  for (std::size_t f = part.faces.size(); f < sampled.size(); ++f)
+    if (!sampled[f]) out.skipped.push_back({group_name(part, f - part.faces.size()), reason, 1});
+}
+
+void count_losses(const MeshPointLosses& losses, PointScene& scene) {
+  const auto note = [&](std::size_t count, const char* what) {
+    if (count > 0) scene.notes.push_back(std::to_string(count) + what);
+  };
+  note(losses.loose_vertices, " vertices that no polygon uses lie on no surface: not sampled");
+  note(losses.flat_triangles, " triangles without area: of no weight in curvatures");
+  note(losses.lost_vertices, " vertices have only triangles without area: not sampled");
+  note(losses.split_vertices, " vertices at creases: a point for each smooth side");
+}
+
 Status check(const PointSamplingOptions& options) {
   const auto bad = [](const char* why) { return Status{StatusCode::invalid_argument, why}; };
   if (options.method == PointMethod::certified)
@@ -214,7 +239,12 @@ void append(const PartPoints& from, PartPoints& to) {
 
 Result<PointScene> sample_points(const Model& model, const PointSamplingOptions& options) {
   if (const Status status = check(options); !status.ok()) return status;
-  if (options.method == PointMethod::certified) return certified_points(model, options);
+  if (options.method == PointMethod::certified) {
+    auto scene = certified_points(model, options);
+    for (std::size_t i = 0; scene.ok() && i < model.parts.size(); ++i)
+      list_skipped_groups(model.parts[i], "a mesh has no certified points", scene->parts[i]);
+    return scene;
+  }
   PointScene scene;
   scene.epsilon = options.epsilon;
   scene.delta = options.delta;
@@ -226,6 +256,16 @@ Result<PointScene> sample_points(const Model& model, const PointSamplingOptions&
     };
     const Status status = PartPointSampler(model.parts[i], options).run(go_on, scene.parts[i]);
     if (!status.ok()) return status;
+    const Part& part = model.parts[i];
+    if (!part.polygons.empty()) {
+      MeshPointLosses losses;
+      MeshPointOptions mesh = options.mesh;
+      mesh.epsilon = options.epsilon;
+      mesh.first_face = static_cast<std::uint32_t>(part.faces.size());
+      append(mesh_points(part.polygons, mesh, losses), scene.parts[i]);
+      count_losses(losses, scene);
+      list_skipped_groups(part, "none of its polygons has an area", scene.parts[i]);
+    }
     if (!go_on(1)) return {StatusCode::cancelled, ""};
   }
   return scene;

@@ -5,6 +5,7 @@
 #include "../core/progress.h"
 #include "../core/status.h"
 #include "differential_point.h"
+#include "mesh_points.h"
 
 namespace dupin {
 
@@ -39,6 +40,7 @@ struct PointSamplingOptions {
   double border = 0;
   /// Certified: the largest distance from the surface.
   double tolerance = 0;
+  MeshPointOptions mesh;  ///< of meshes; epsilon and first_face are set by the sampler
   Progress progress;
 };
 
@@ -47,8 +49,9 @@ inline constexpr int kMostSteps = 1024;
 /// In all; more are refused with `limit`.
 inline constexpr std::size_t kMostPoints = 200'000'000;
 
-/// Every face of every part, in parallel; the result does not depend on the number of threads. Faces without
-/// a point are listed in PartPoints::skipped with the reason. A face that uniform sampling misses (its trims
+/// Every face of every part, in parallel, and the vertices of its polygons (mesh_points.h; not for certified
+/// points, which a mesh has none of); the result does not depend on the number of threads. Faces without a
+/// point are listed in PartPoints::skipped with the reason. A face that uniform sampling misses (its trims
 /// lie between the samples) is sampled more densely until it is not.
 Result<PointScene> sample_points(const Model& model, const PointSamplingOptions& options);
 

@@ -153,6 +153,26 @@ TEST(Sample, MoreSamplesThanThereIsRoomForIsALimit) {
   EXPECT_TRUE(folder.names().empty());
 }
 
+TEST(Sample, AMeshHasAPointAtEveryVertexThatLiesOnASurface) {
+  const Folder folder;
+  // A pyramid, a vertex beside it, and a triangle without area.
+  const std::string file =
+      folder.write("a.obj",
+                   "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 0.1\nv 7 7 7\nv 8 0 0\nv 9 0 0\nv 10 0 0\n"
+                   "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 7 8 9\n");
+  for (const char* curvature : {"fitted", "taubin"}) {
+    const json stats = sampled(folder, "a.csv", {"--mesh-curvature", curvature}, file);
+    EXPECT_EQ(stats["points"]["written"], 5);
+    EXPECT_EQ(stats["faces"]["drawn"], 1);
+    ASSERT_EQ(stats["notes"].size(), 3U);
+    EXPECT_THAT(stats["notes"][0].get<std::string>(), HasSubstr("1 vertices that no polygon uses"));
+    EXPECT_THAT(stats["notes"][2].get<std::string>(),
+                HasSubstr("3 vertices have only triangles without area"));
+    const auto table = rows(folder.path("a.csv"));
+    EXPECT_NEAR(table[4][9], -0.2 / 0.51, 0.02) << "the apex";
+  }
+}
+
 TEST(Sample, AFileThatIsNoModelIsUnreadable) {
   const Folder folder;
   const std::string file = folder.write("x.step", "nothing");
