@@ -25,7 +25,7 @@ class RenderJob {
  private:
   Status reserve_outputs();
   Status load_model();
-  Status check_points();
+  void note_loose_points();
   Status prepare();
   Status draw();
   Status write();
@@ -56,7 +56,7 @@ Status RenderJob::load_model() {
   model_ = std::move(loaded->model);
   if (face_instance_count(model_) == 0 && model_.skipped.empty())
     return {StatusCode::unreadable, model_.source + ": holds no faces"};
-  if (Status status = check_points(); !status.ok()) return status;
+  note_loose_points();
   for (const std::string& note : model_.notes) session_.note(note);
   const Result<Camera> camera = make_camera(options_.view, model_);
   if (!camera.ok()) return camera.status();
@@ -64,18 +64,12 @@ Status RenderJob::load_model() {
   return {};
 }
 
-/// Points without polygons have no extent to be drawn with.
-Status RenderJob::check_points() {
+/// Meshes draw what their polygons use; only a file of points alone is drawn as points.
+void RenderJob::note_loose_points() {
   std::size_t loose = 0;
-  bool any_face = !model_.skipped.empty();
-  for (const Part& part : model_.parts) {
-    if (!part.polygons.empty()) loose += loose_point_count(part.polygons);
-    any_face = any_face || !part.faces.empty() || part.polygons.polygon_count() > 0;
-  }
-  if (!any_face)
-    return {StatusCode::unreadable, model_.source + ": holds points only, which are not drawn yet"};
+  for (const Part& part : model_.parts)
+    if (part.polygons.polygon_count() > 0) loose += loose_point_count(part.polygons);
   if (loose > 0) session_.note(std::to_string(loose) + " vertices that no polygon uses are not drawn");
-  return {};
 }
 
 Status RenderJob::prepare() {
@@ -153,6 +147,7 @@ Status RenderJob::draw() {
   stats_.width = frame_.width;
   stats_.height = frame_.height;
   stats_.covered_pixels = frame_.stats.covered_pixels;
+  primitive_->report_drawn(stats_);
   return {};
 }
 

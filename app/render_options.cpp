@@ -55,7 +55,7 @@ void add_quality_options(CLI::App& command, RenderOptions& options) {
   command
       .add_option("--primitive", options.primitive,
                   "auto, quadric; dp: the papers' flat differential points; square, rectangle, ellipse: "
-                  "splats; triangles: the tessellated reference")
+                  "splats; pop, qsplat: points and triangles of meshes; triangles: the tessellated reference")
       ->check(CLI::Validator(check_primitive, ""))
       ->type_name("NAME")
       ->capture_default_str()
@@ -93,6 +93,30 @@ void add_quality_options(CLI::App& command, RenderOptions& options) {
   command.add_option("--samples", options.samples, "Samples a pixel (default: 4, for EXR 1)")
       ->check(CLI::Range(1, 64))
       ->type_name("N")
+      ->group(group);
+}
+
+void add_tree_options(CLI::App& command, RenderOptions& options) {
+  const char* group = "Meshes";
+  command
+      .add_option(
+          "--splat-size", options.trees.threshold_px,
+          "Largest diameter of what is drawn as a point, in pixels; what is larger is drawn by its triangles")
+      ->check(CLI::Range(0.05, 100.0))
+      ->type_name("PX")
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option_function<std::string>(
+          "--splatting",
+          [&options](const std::string& how) { options.trees.reconstruct = how == "visibility"; },
+          "simple: discs; visibility: points of one pixel, and the holes between them filled from around")
+      ->check(CLI::IsMember({"simple", "visibility"}))
+      ->type_name("NAME")
+      ->group(group);
+  command
+      .add_flag("--silhouette", options.trees.silhouette,
+                "Draw triangles, however small, near the silhouette")
       ->group(group);
 }
 
@@ -185,6 +209,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   command.add_option("--stats", options.stats, "Write what was done, as JSON")->type_name("FILE.json");
   add_view_options(command, options.view);
   add_quality_options(command, options);
+  add_tree_options(command, options);
   add_look_options(command, options);
   command
       .add_option("--aov", options.aovs,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "../nurbs/model.h"
+#include "../render/tree_layer.h"
 #include "point_options.h"
 #include "session.h"
 #include "view.h"
@@ -30,6 +31,7 @@ struct RenderOptions {
   std::vector<double> lights;  ///< x, y, z of each
   PointOptions points;
   std::string point_shading = "published";
+  TreeLayerOptions trees;
 
   bool exr() const;
   /// The files are .dps.

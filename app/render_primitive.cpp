@@ -8,6 +8,7 @@ const std::vector<PrimitiveKind>& primitive_kinds() {
   static const std::vector<PrimitiveKind> kinds{
       {{"auto", "quadric"}, make_quadric_primitive},
       {{"dp", "square", "rectangle", "ellipse"}, make_points_primitive},
+      {{"pop", "qsplat"}, make_trees_primitive},
       {{"triangles"}, make_triangles_primitive}};
   return kinds;
 }

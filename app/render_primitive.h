@@ -36,6 +36,8 @@ class RenderPrimitive {
   virtual Status prepare(const PrimitiveInput& input, RenderStats& stats) = 0;
   /// What `prepare` made; valid while this lives.
   virtual SceneContent content() const = 0;
+  /// Called once everything has been drawn: what only the frames know.
+  virtual void report_drawn(RenderStats&) const {}
 };
 
 /// One kind, and the names that it goes by.
@@ -49,6 +51,7 @@ const std::vector<PrimitiveKind>& primitive_kinds();
 std::unique_ptr<RenderPrimitive> make_primitive(const RenderOptions& options);
 
 std::unique_ptr<RenderPrimitive> make_quadric_primitive(const RenderOptions& options);
+std::unique_ptr<RenderPrimitive> make_trees_primitive(const RenderOptions& options);
 std::unique_ptr<RenderPrimitive> make_triangles_primitive(const RenderOptions& options);
 std::unique_ptr<RenderPrimitive> make_points_primitive(const RenderOptions& options);
 

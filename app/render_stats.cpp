@@ -102,6 +102,10 @@ nlohmann::ordered_json to_json(const RenderStats& stats) {
   json["faces"] = to_json(stats.faces);
   json["primitives"] = {
       {"kind", stats.primitive}, {"count", stats.primitives}, {"bytes", stats.bytes}, {"clips", stats.clips}};
+  if (stats.points)
+    json["point_trees"] = {{"points", stats.points->points},         {"triangles", stats.points->triangles},
+                           {"visited_nodes", stats.points->visited}, {"cut_ms", stats.points->cut_ms},
+                           {"gather_ms", stats.points->gather_ms},   {"raster_ms", stats.points->raster_ms}};
   json["error"] = to_json(stats.error);
   json["time_s"] = to_json(stats.times);
   json["peak_rss_bytes"] = peak_resident_bytes();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "../nurbs/model.h"
+#include "../render/tree_layer.h"
 #include "../sampling/quadric_dp.h"
 
 namespace dupin::app {
@@ -46,7 +47,8 @@ struct RenderStats {
   FaceReport faces;
   std::string primitive;
   std::uint64_t primitives = 0, bytes = 0, clips = 0;
-  std::optional<CertifiedError> error;  ///< none for triangles
+  std::optional<CertifiedError> error;   ///< none for triangles
+  std::optional<TreeLayerStats> points;  ///< of meshes' point trees, in the last frame
   StageTimes times;
   int width = 0, height = 0;
   std::uint64_t covered_pixels = 0;

@@ -40,8 +40,9 @@ namespace dupin {
   X(GETUNIFORMLOCATION, GetUniformLocation) X(ISENABLED, IsEnabled) X(ISENABLEDI, IsEnabledi)               \
   X(LINKPROGRAM, LinkProgram) X(PIXELSTOREI, PixelStorei) X(POLYGONMODE, PolygonMode)                       \
   X(READBUFFER, ReadBuffer) X(READPIXELS, ReadPixels) X(SCISSOR, Scissor) X(SHADERSOURCE, ShaderSource)     \
-  X(STENCILMASK, StencilMask) X(TEXBUFFER, TexBuffer) X(TEXIMAGE2D, TexImage2D) X(TEXIMAGE3D, TexImage3D)                             \
-  X(TEXPARAMETERI, TexParameteri) X(TRANSFORMFEEDBACKVARYINGS, TransformFeedbackVaryings)                   \
+  X(STENCILMASK, StencilMask) X(TEXBUFFER, TexBuffer) X(TEXIMAGE2D, TexImage2D) X(TEXIMAGE3D, TexImage3D)   \
+  X(TEXPARAMETERI, TexParameteri) X(TEXSUBIMAGE2D, TexSubImage2D)                                           \
+  X(TRANSFORMFEEDBACKVARYINGS, TransformFeedbackVaryings)                                                   \
   X(UNIFORM1F, Uniform1f) X(UNIFORM1I, Uniform1i) X(UNIFORM1UI, Uniform1ui) X(UNIFORM2F, Uniform2f)         \
   X(UNIFORM3I, Uniform3i) X(UNIFORM3F, Uniform3f) X(UNIFORM4F, Uniform4f)                                   \
   X(UNIFORMMATRIX3FV, UniformMatrix3fv) X(USEPROGRAM, UseProgram)                                           \

@@ -84,6 +84,12 @@ void TexelBuffer::reserve(std::size_t bytes, GLenum usage) {
   if (bytes > bytes_ || bytes_ == 0) assign(nullptr, std::max(bytes, bytes_ + bytes_ / 2), usage);
 }
 
+void TexelBuffer::write(std::size_t offset, const void* data, std::size_t bytes) {
+  if (bytes == 0) return;
+  gl_->BindBuffer(GL_ARRAY_BUFFER, buffer_.name());
+  gl_->BufferSubData(GL_ARRAY_BUFFER, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), data);
+}
+
 void TexelBuffer::bind(int unit) const {
   gl_->ActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + unit));
   gl_->BindTexture(GL_TEXTURE_BUFFER, texture_.name());

@@ -84,6 +84,8 @@ class TexelBuffer {
   void assign(const void* data, std::size_t bytes, GLenum usage);
   /// Grows to at least `bytes`; the content is lost when it grows.
   void reserve(std::size_t bytes, GLenum usage);
+  /// Replaces a part of the content; room for it must be there.
+  void write(std::size_t offset, const void* data, std::size_t bytes);
   /// On texture unit `unit`.
   void bind(int unit) const;
   GLuint buffer() const { return buffer_.name(); }

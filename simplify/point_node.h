@@ -5,7 +5,7 @@
 // word 3      normal on an octahedron (11 + 11), triangles of a leaf − 1 (2), colour (8)
 //
 // Whatever bounds something is rounded outwards: a decoded sphere contains what it stands for. The shaders
-// decode nodes too (shaders/point_node.glsl): both must do the same.
+// decode nodes too (shaders/tree_node.glsl): both must do the same.
 #ifndef DUPIN_SIMPLIFY_POINT_NODE_H
 #define DUPIN_SIMPLIFY_POINT_NODE_H
 

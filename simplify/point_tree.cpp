@@ -14,7 +14,7 @@ Status damaged(const std::string& what) {
   return {StatusCode::unreadable, "the point tree is damaged: " + what};
 }
 
-constexpr std::uint64_t kMostLeaves = std::uint64_t{1} << 31;
+constexpr std::uint64_t kMostLeaves = std::uint64_t{1} << 29;
 
 /// Texts as a length and that many bytes.
 class TextReader {

@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"unknown_option", {"render", "MODEL", "-o", "OUT", "--sparkle"}, "--sparkle"},
         WrongUsage{"output_kind", {"render", "MODEL", "-o", "OUT.jpg"}, ".png or .exr"},
         WrongUsage{"view", {"render", "MODEL", "-o", "OUT", "--view", "inside"}, "inside"},
-        WrongUsage{"later_primitive", {"render", "MODEL", "-o", "OUT", "--primitive", "qsplat"}, "qsplat"},
+        WrongUsage{"later_primitive", {"render", "MODEL", "-o", "OUT", "--primitive", "amg"}, "amg"},
         WrongUsage{"unknown_primitive", {"render", "MODEL", "-o", "OUT", "--primitive", "cubes"}, "cubes"},
         WrongUsage{"eye_of_two_numbers", {"render", "MODEL", "-o", "OUT", "--eye", "1,2"}, "--eye"},
         WrongUsage{"eye_is_target",

@@ -1,0 +1,348 @@
+#include "splat_raster.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include "../core/parallel.h"
+
+namespace dupin {
+namespace {
+
+constexpr int kSubpixelBits = 8, kSubpixels = 1 << kSubpixelBits;
+/// Coordinates beyond this many pixels are cut off, so that products of differences fit 64 bits.
+constexpr double kGuardBand = 1 << 20;
+constexpr std::size_t kTask = 4096;
+
+struct Projected {
+  double x = 0, y = 0;  ///< pixels
+  double z = 0;         ///< the depth buffer's value
+};
+
+class Projector {
+ public:
+  Projector(const SplatProjection& p, int width, int height)
+      : p_(p), half_width_(0.5 * width), half_height_(0.5 * height) {}
+
+  static double value(const std::array<double, 4>& plane, const Vec3& g) {
+    return plane[0] * g.x + plane[1] * g.y + plane[2] * g.z + plane[3];
+  }
+  /// Clip X, Y and the depth.
+  Vec3 clip(const Vec3& g) const { return {value(p_.x, g), value(p_.y, g), value(p_.depth, g)}; }
+  Projected project(const Vec3& clip) const {
+    const double w = p_.perspective ? 1 / clip.z : 1;
+    return {(clip.x * w + 1) * half_width_, (clip.y * w + 1) * half_height_, buffer_depth(clip.z)};
+  }
+  double buffer_depth(double depth) const {
+    const auto& t = p_.depth_terms;
+    return p_.perspective ? t[2] / depth : t[0] + t[1] * depth;
+  }
+
+ private:
+  const SplatProjection& p_;
+  double half_width_, half_height_;
+};
+
+std::uint64_t key_of(double z, std::uint32_t number) {
+  return std::uint64_t{std::bit_cast<std::uint32_t>(static_cast<float>(z))} << 32 |
+         static_cast<std::uint32_t>(~number);
+}
+
+void keep_larger(std::uint64_t& pixel, std::uint64_t key) {
+  std::atomic_ref<std::uint64_t> shared(pixel);
+  std::uint64_t now = shared.load(std::memory_order_relaxed);
+  while (key > now && !shared.compare_exchange_weak(now, key, std::memory_order_relaxed)) {
+  }
+}
+
+bool is_usable(const Projected& p) {
+  return p.z > 0 && p.z < std::numeric_limits<float>::max() && std::abs(p.x) < kGuardBand &&
+         std::abs(p.y) < kGuardBand;
+}
+
+/// Rows that one task wrote to.
+struct Rows {
+  int first = std::numeric_limits<int>::max(), last = 0;
+  void add(int from, int to) { first = std::min(first, from), last = std::max(last, to); }
+};
+
+}  // namespace
+
+// ---- points
+
+class SplatRaster::Points {
+ public:
+  Points(SplatRaster& raster, const SplatProjection& projection, Splatting splatting)
+      : raster_(raster),
+        projection_(projection),
+        projector_(projection, raster.width_, raster.height_),
+        splatting_(splatting) {}
+
+  void add(const EncodedNode& node, std::uint32_t number) {
+    const Vec3 clip = projector_.clip(node_center(node));
+    if (projection_.perspective && !(clip.z > 0)) return;
+    const Projected at = projector_.project(clip);
+    if (!is_usable(at)) return;
+    const double steps = node_radius(node);
+    const double radius = steps * projection_.pixels_per_step / (projection_.perspective ? clip.z : 1);
+    if (radius <= 0.5) return middle(at, key_of(at.z, number));
+    if (splatting_ == Splatting::simple) return disc(at, radius, key_of(at.z, number));
+    // Behind the whole sphere, so that no neighbour's middle is hidden.
+    const double behind = projector_.buffer_depth(clip.z + steps * projection_.depth_per_step);
+    if (behind > 0) disc(at, radius, key_of(behind, number | kHole));
+    middle(at, key_of(at.z, number));
+  }
+  const Rows& rows() const { return rows_; }
+
+ private:
+  void middle(const Projected& at, std::uint64_t key) {
+    const int x = static_cast<int>(std::floor(at.x)), y = static_cast<int>(std::floor(at.y));
+    if (x < 0 || y < 0 || x >= raster_.width_ || y >= raster_.height_) return;
+    rows_.add(y, y + 1);
+    keep_larger(pixel(x, y), key);
+  }
+
+  /// The pixels whose centres lie within; at least the one that the middle lies in.
+  void disc(const Projected& at, double radius, std::uint64_t key) {
+    const int y0 = std::max(0, static_cast<int>(std::ceil(at.y - radius - 0.5)));
+    const int y1 = std::min(raster_.height_, static_cast<int>(std::floor(at.y + radius - 0.5)) + 1);
+    if (y0 < y1) rows_.add(y0, y1);
+    for (int y = y0; y < y1; ++y) {
+      const double dy = y + 0.5 - at.y, half = std::sqrt(std::max(0.0, radius * radius - dy * dy));
+      const int x0 = std::max(0, static_cast<int>(std::ceil(at.x - half - 0.5)));
+      const int x1 = std::min(raster_.width_, static_cast<int>(std::floor(at.x + half - 0.5)) + 1);
+      for (int x = x0; x < x1; ++x) keep_larger(pixel(x, y), key);
+    }
+    middle(at, key);
+  }
+
+  std::uint64_t& pixel(int x, int y) {
+    return raster_.pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(raster_.width_) +
+                           static_cast<std::size_t>(x)];
+  }
+
+  SplatRaster& raster_;
+  const SplatProjection& projection_;
+  Projector projector_;
+  Splatting splatting_;
+  Rows rows_;
+};
+
+// ---- triangles
+
+class SplatRaster::Triangles {
+ public:
+  Triangles(SplatRaster& raster, const SplatProjection& projection, std::span<const SplatVertex> vertices)
+      : raster_(raster),
+        projection_(projection),
+        projector_(projection, raster.width_, raster.height_),
+        vertices_(vertices) {}
+
+  void add(const SplatTriangle& triangle, std::uint32_t number) {
+    const Known* corners[3];
+    bool whole = true;
+    Known copies[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      copies[k] = vertex(triangle[k]);
+      corners[k] = &copies[k];
+      whole = whole && copies[k].usable;
+    }
+    if (whole)
+      fill(corners[0]->at, corners[1]->at, corners[2]->at, number);
+    else
+      cut(copies, number);
+  }
+  const Rows& rows() const { return rows_; }
+
+ private:
+  struct Known {
+    std::uint32_t index = 0xffffffffu;
+    bool usable = false;  ///< in front of the nearest depth, and in the guard band
+    Vec3 clip;
+    Projected at;
+  };
+  static constexpr std::size_t kKnown = 1024;
+
+  /// Neighbouring triangles share vertices.
+  const Known& vertex(std::uint32_t index) {
+    Known& known = known_[index % kKnown];
+    if (known.index == index) return known;
+    const SplatVertex& v = vertices_[index];
+    EncodedNode node;
+    node.words[0] = v.words[0], node.words[1] = v.words[1];
+    known.index = index;
+    known.clip = projector_.clip(node_center(node));
+    known.usable = !projection_.perspective || known.clip.z >= projection_.nearest_depth;
+    if (known.usable) known.at = projector_.project(known.clip);
+    known.usable = known.usable && is_usable(known.at);
+    return known;
+  }
+
+  /// Against the nearest depth and the guard band's four sides, in clip coordinates.
+  void cut(const Known* corners, std::uint32_t number) {
+    std::vector<Vec3> polygon{corners[0].clip, corners[1].clip, corners[2].clip}, next;
+    const double sx = 0.5 * raster_.width_, sy = 0.5 * raster_.height_;
+    const double bx = kGuardBand / 2 / sx, by = kGuardBand / 2 / sy;
+    for (int side = 0; side < 5 && polygon.size() >= 3; ++side) {
+      const auto inside = [&](const Vec3& p) {
+        const double w = projection_.perspective ? p.z : 1;
+        switch (side) {
+          case 0:
+            return projection_.perspective ? p.z - projection_.nearest_depth : 1.0;
+          case 1:
+            return bx * w - p.x;
+          case 2:
+            return bx * w + p.x;
+          case 3:
+            return by * w - p.y;
+          default:
+            return by * w + p.y;
+        }
+      };
+      next.clear();
+      for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Vec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+        const double fa = inside(a), fb = inside(b);
+        if (fa >= 0) next.push_back(a);
+        if ((fa >= 0) != (fb >= 0)) next.push_back(a + (b - a) * (fa / (fa - fb)));
+      }
+      polygon.swap(next);
+    }
+    for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
+      const Projected p[3] = {projector_.project(polygon[0]), projector_.project(polygon[i]),
+                              projector_.project(polygon[i + 1])};
+      if (is_usable(p[0]) && is_usable(p[1]) && is_usable(p[2])) fill(p[0], p[1], p[2], number);
+    }
+  }
+
+  struct Edge {
+    std::int64_t a, b, c;  ///< a x + b y + c at pixel (x, y); covered where it is not negative
+  };
+  /// Of three corners in an order that makes the inside positive. A pixel's centre on an edge belongs to the
+  /// triangle that has the edge on its top or left.
+  static Edge edge(std::int64_t x0, std::int64_t y0, std::int64_t x1, std::int64_t y1) {
+    const std::int64_t dx = x1 - x0, dy = y1 - y0;
+    const bool owned = dy < 0 || (dy == 0 && dx > 0);
+    const std::int64_t half = kSubpixels / 2;
+    Edge e;
+    e.a = -dy * kSubpixels, e.b = dx * kSubpixels;
+    e.c = dx * (half - y0) - dy * (half - x0) - (owned ? 0 : 1);
+    return e;
+  }
+
+  void fill(const Projected& p0, const Projected& p1, const Projected& p2, std::uint32_t number) {
+    const auto snapped = [](double v) { return static_cast<std::int64_t>(std::llround(v * kSubpixels)); };
+    std::int64_t x[3] = {snapped(p0.x), snapped(p1.x), snapped(p2.x)},
+                 y[3] = {snapped(p0.y), snapped(p1.y), snapped(p2.y)};
+    double z[3] = {p0.z, p1.z, p2.z};
+    const std::int64_t area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
+    if (area == 0) return;
+    if (area < 0) std::swap(x[1], x[2]), std::swap(y[1], y[2]), std::swap(z[1], z[2]);
+    // Pixels whose centres lie in the box.
+    const auto first = [](std::int64_t lo) { return (lo + kSubpixels / 2 - 1) >> kSubpixelBits; };
+    const auto last = [](std::int64_t hi) { return ((hi - kSubpixels / 2) >> kSubpixelBits) + 1; };
+    const std::int64_t x0 = std::max<std::int64_t>(0, first(std::min({x[0], x[1], x[2]})));
+    const std::int64_t x1 = std::min<std::int64_t>(raster_.width_, last(std::max({x[0], x[1], x[2]})));
+    const std::int64_t y0 = std::max<std::int64_t>(0, first(std::min({y[0], y[1], y[2]})));
+    const std::int64_t y1 = std::min<std::int64_t>(raster_.height_, last(std::max({y[0], y[1], y[2]})));
+    if (x0 >= x1 || y0 >= y1) return;
+    rows_.add(static_cast<int>(y0), static_cast<int>(y1));
+    const Edge e[3] = {edge(x[0], y[0], x[1], y[1]), edge(x[1], y[1], x[2], y[2]),
+                       edge(x[2], y[2], x[0], y[0])};
+
+    const double scale = static_cast<double>(kSubpixels) / static_cast<double>(std::abs(area));
+    const double dz1 = z[1] - z[0], dz2 = z[2] - z[0];
+    const double slope_x =
+        (dz1 * static_cast<double>(y[2] - y[0]) - dz2 * static_cast<double>(y[1] - y[0])) * scale;
+    const double slope_y =
+        (dz2 * static_cast<double>(x[1] - x[0]) - dz1 * static_cast<double>(x[2] - x[0])) * scale;
+    const double lowest = std::min({z[0], z[1], z[2]}), highest = std::max({z[0], z[1], z[2]});
+    const double at_zero = z[0] - slope_x * (static_cast<double>(x[0]) / kSubpixels - 0.5) -
+                           slope_y * (static_cast<double>(y[0]) / kSubpixels - 0.5);
+    for (std::int64_t row = y0; row < y1; ++row) {
+      std::int64_t from = x0, to = x1;
+      for (const Edge& k : e) narrow(k, row, from, to);
+      std::uint64_t* const pixels = raster_.pixels_.data() + row * raster_.width_;
+      for (std::int64_t column = from; column < to; ++column) {
+        const double depth =
+            std::clamp(at_zero + slope_x * static_cast<double>(column) + slope_y * static_cast<double>(row),
+                       lowest, highest);
+        keep_larger(pixels[column], key_of(depth, number));
+      }
+    }
+  }
+
+  static std::int64_t floor_div(std::int64_t a, std::int64_t b) {
+    const std::int64_t q = a / b;
+    return q * b != a && (a < 0) != (b < 0) ? q - 1 : q;
+  }
+  /// The columns of a row where an edge's value is not negative.
+  static void narrow(const Edge& e, std::int64_t row, std::int64_t& from, std::int64_t& to) {
+    const std::int64_t at_zero = e.b * row + e.c;
+    if (e.a == 0) {
+      if (at_zero < 0) to = from;
+    } else if (to - from <= 8) {  // stepping is cheaper than dividing
+      while (from < to && e.a * from + at_zero < 0) ++from;
+      while (from < to && e.a * (to - 1) + at_zero < 0) --to;
+    } else if (e.a > 0) {
+      from = std::max(from, -floor_div(at_zero, e.a));  // the least x with a x >= -c
+    } else {
+      to = std::min(to, floor_div(at_zero, -e.a) + 1);
+    }
+  }
+
+  SplatRaster& raster_;
+  const SplatProjection& projection_;
+  Projector projector_;
+  std::span<const SplatVertex> vertices_;
+  std::vector<Known> known_ = std::vector<Known>(kKnown);
+  Rows rows_;
+};
+
+// ----
+
+void SplatRaster::begin(int width, int height) {
+  const std::size_t size = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  if (width != width_ || height != height_) {
+    pixels_.assign(size, 0);
+  } else {
+    const auto row = [&](int y) { return pixels_.begin() + static_cast<std::ptrdiff_t>(y) * width_; };
+    if (rows_[0] < rows_[1]) std::fill(row(rows_[0]), row(rows_[1]), 0);
+  }
+  width_ = width, height_ = height;
+  rows_ = {height, 0};
+}
+
+void SplatRaster::add_points(const SplatProjection& projection, std::span<const EncodedNode> nodes,
+                             std::uint32_t first, Splatting splatting) {
+  const std::size_t tasks = (nodes.size() + kTask - 1) / kTask;
+  std::mutex lock;
+  parallel_for(tasks, [&](std::size_t task) {
+    Points points(*this, projection, splatting);
+    for (std::size_t i = task * kTask; i < std::min(nodes.size(), (task + 1) * kTask); ++i)
+      points.add(nodes[i], first + static_cast<std::uint32_t>(i));
+    const std::lock_guard guard(lock);
+    if (points.rows().first < points.rows().last)
+      rows_ = {std::min(rows_[0], points.rows().first), std::max(rows_[1], points.rows().last)};
+  });
+}
+
+void SplatRaster::add_triangles(const SplatProjection& projection, std::span<const SplatVertex> vertices,
+                                std::span<const SplatTriangle> triangles, std::span<const std::uint32_t> list,
+                                std::uint32_t first) {
+  const std::size_t tasks = (list.size() + kTask - 1) / kTask;
+  std::mutex lock;
+  parallel_for(tasks, [&](std::size_t task) {
+    Triangles filler(*this, projection, vertices);
+    for (std::size_t i = task * kTask; i < std::min(list.size(), (task + 1) * kTask); ++i)
+      filler.add(triangles[list[i]], kTriangle | (first + static_cast<std::uint32_t>(i)));
+    const std::lock_guard guard(lock);
+    if (filler.rows().first < filler.rows().last)
+      rows_ = {std::min(rows_[0], filler.rows().first), std::max(rows_[1], filler.rows().last)};
+  });
+}
+
+}  // namespace dupin
