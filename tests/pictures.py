@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Pictures of quadric DPs beside pictures of fine triangles, on many models and cameras.
+"""Pictures of quadric DPs beside pictures of fine triangles or exact ones, on many models and cameras.
 
-    tests/pictures.py --dupin build/app/dupin [--out FOLDER] [--cameras whole,whole,close] [--size N] FILE|FOLDER...
+    tests/pictures.py --dupin build/app/dupin [--exact build/bench/exact/dupin_exact] [--out FOLDER]
+                      [--cameras whole,whole,close] [--size N] FILE|FOLDER...
 
 Every camera is drawn twice, `--primitive quadric` at the default tolerances and `--primitive triangles` at a deflection of 1e-5
-of the diagonal, and `dupin compare` measures the difference. A line each; SHORT and the reasons where a limit is missed (exit
+of the diagonal (with --exact: by the exact ray caster), and `dupin compare` measures the difference. A line each; SHORT and the reasons where a limit is missed (exit
 code 1). Cameras are random but the same for a file's name every time. Needs nothing beyond Python's own library.
 """
 import argparse
@@ -95,12 +96,24 @@ class Checker:
             raise RuntimeError(f"{kind}: exit {done.returncode}: {done.stderr.strip()[-160:]}")
         return picture, json.loads(stats.read_text())
 
+    def cast(self, file, view, name):
+        picture = self.out / f"{name}.exact.exr"
+        size = f"{self.options.size},{self.options.size}"
+        done = run([self.options.exact, file, "-o", picture, "--resolution", size, "--aov", "normal,depth,face", "--quiet", *view],
+                   self.options.seconds)
+        if done.returncode != 0:
+            raise RuntimeError(f"exact: exit {done.returncode}: {done.stderr.strip()[-160:]}")
+        return picture
+
     def check(self, file, number, view):
         """One line about one picture, and what it misses."""
         name = f"{file.name}.{number}"
-        reference, triangles = self.render(file, "triangles", view, name)
         picture, quadric = self.render(file, "quadric", view, name)
-        done = run([self.options.dupin, "compare", reference, picture, "--json"], self.options.seconds)
+        if self.options.exact:
+            reference, triangles = self.cast(file, view, name), None
+        else:
+            reference, triangles = self.render(file, "triangles", view, name)
+        done = run([self.options.dupin, "compare", reference, picture, "--json", "--pixels", "5"], self.options.seconds)
         if done.returncode != 0:
             raise RuntimeError(f"compare: exit {done.returncode}: {done.stderr.strip()[-160:]}")
         difference = json.loads(done.stdout)
@@ -111,9 +124,13 @@ class Checker:
         geometry = difference["geometry"]
         line = (f"{file.name}.{number}: holes {geometry['holes_px']} px, silhouette {difference['silhouette_px']} of "
                 f"{difference['covered_px'][0]}, normals 99 % {measure(geometry, 'normal_degrees', 'p99'):.3f} deg, "
-                f"depth 99 % {measure(geometry, 'depth_px', 'p99'):.4f} px, {number_of(quadric)} DPs, "
-                f"{number_of(triangles)} triangles, frames {1e3 * quadric['time_s']['first_frame']:.1f} and "
-                f"{1e3 * triangles['time_s']['first_frame']:.1f} ms")
+                f"depth 99 % {measure(geometry, 'depth_px', 'p99'):.4f} px, {number_of(quadric)} DPs, frame "
+                f"{1e3 * quadric['time_s']['first_frame']:.1f} ms")
+        if triangles:
+            line += f"; {number_of(triangles)} triangles, {1e3 * triangles['time_s']['first_frame']:.1f} ms"
+        for pixel in difference.get("pixels", []):
+            if pixel["kind"] in ("hole", "extra"):
+                line += f"; {pixel['kind']} at {pixel['x']},{pixel['y']} of face {pixel['face'][0] or pixel['face'][1]}"
         return line, shortfalls(difference, quadric)
 
     def check_file(self, file):
@@ -139,6 +156,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("paths", nargs="+", metavar="FILE|FOLDER")
     parser.add_argument("--dupin", required=True, help="the command")
+    parser.add_argument("--exact", help="dupin_exact, whose pictures are then the reference")
     parser.add_argument("--out", default=None, help="where pictures and statistics go")
     parser.add_argument("--cameras", default="whole,whole,close")
     parser.add_argument("--size", type=int, default=768)

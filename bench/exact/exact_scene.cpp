@@ -6,7 +6,7 @@
 
 #include "../../core/parallel.h"
 #include "bvh.h"
-#include "edge_tubes.h"
+#include "crack_strips.h"
 #include "surface_caster.h"
 #include "trim_region.h"
 
@@ -22,28 +22,15 @@ struct Candidate {
   double t = INFINITY;
   Vec2 uv;
   std::uint32_t instance = 0, face = 0;
-  bool found = false;
+  bool found = false, in_crack = false;
   bool nearer_than(const Candidate& other) const {
     return t < other.t || (t == other.t && std::pair(instance, face) < std::pair(other.instance, other.face));
   }
 };
 
-/// The nearest crossing inside its face so far, and the nearest edge's tube.
-struct Nearest {
-  Candidate inside, in_tube;
-  double reach = 0;  ///< how much farther along the ray the faces of that tube may be
-  void add(const Candidate& candidate) {
-    if (candidate.nearer_than(inside)) inside = candidate;
-  }
-  void add_in_tube(const Candidate& candidate, double reach_of_tube) {
-    if (candidate.nearer_than(in_tube)) in_tube = candidate, reach = reach_of_tube;
-  }
-  bool stopped_by_tube() const { return in_tube.found && in_tube.t + reach < inside.t; }
-};
-
 class ExactPart {
  public:
-  explicit ExactPart(const Part& part) : tubes_(part), faces_(part.faces.size()) {
+  explicit ExactPart(const Part& part) : cracks_(part), faces_(part.faces.size()) {
     parallel_for(faces_.size(), [&](std::size_t i) {
       const Face& face = part.faces[i];
       faces_[i].surface = make_caster(part.surfaces[face.surface], face.uv_box);
@@ -62,22 +49,23 @@ class ExactPart {
   const Box3& box() const { return box_; }
   const std::vector<ExactFace>& faces() const { return faces_; }
 
-  void cast(const Line& line, double least, std::uint32_t instance, Nearest& nearest) const {
+  void cast(const Line& line, double least, std::uint32_t instance, Candidate& nearest) const {
     std::vector<Crossing> crossings;
-    bvh_.traverse(line, least, nearest.inside.t, [&](std::uint32_t item) {
+    bvh_.traverse(line, least, nearest.t, [&](std::uint32_t item) {
       const auto [face, cell] = cells_[item];
       crossings.clear();
       faces_[face].surface->meet(cell, line, crossings);
       for (const Crossing& crossing : crossings) {
         Candidate candidate{crossing.t, crossing.uv, instance, face, true};
-        if (crossing.t >= least && candidate.nearer_than(nearest.inside) &&
+        if (crossing.t >= least && candidate.nearer_than(nearest) &&
             faces_[face].region->contains(candidate.uv))
-          nearest.add(candidate);
+          nearest = candidate;
       }
-      return nearest.inside.t;
+      return nearest.t;
     });
-    tubes_.traverse(line, least, nearest.inside.t, [&](const EdgeTubes::Passage& passage) {
-      nearest.add_in_tube({passage.t, passage.uv, instance, passage.face, true}, passage.reach);
+    cracks_.traverse(line, least, nearest.t, [&](const CrackStrips::Crossing& crossing) {
+      const Candidate candidate{crossing.t, crossing.uv, instance, crossing.face, true, true};
+      if (candidate.nearer_than(nearest)) nearest = candidate;
     });
   }
 
@@ -85,7 +73,7 @@ class ExactPart {
   struct Cell {
     std::uint32_t face, cell;
   };
-  EdgeTubes tubes_;
+  CrackStrips cracks_;
   std::vector<ExactFace> faces_;
   std::vector<Cell> cells_;
   Box3 box_;
@@ -120,20 +108,15 @@ class ExactScene::Impl {
   }
 
   std::optional<Hit> cast(const Line& ray, double least) const {
-    Nearest nearest;
+    Candidate nearest;
     instances_.traverse(ray, least, INFINITY, [&](std::uint32_t i) {
       const Affine3& to_part = to_part_[i];
       const Line line{transform_point(to_part, ray.origin), transform_vector(to_part, ray.direction)};
       parts_[model_.instances[i].part].cast(line, least, i, nearest);
-      return nearest.inside.t;
+      return nearest.t;
     });
-    if (nearest.stopped_by_tube()) {
-      Hit hit = describe(nearest.in_tube);
-      hit.in_tube = true;
-      return hit;
-    }
-    if (!nearest.inside.found) return std::nullopt;
-    return describe(nearest.inside);
+    if (!nearest.found) return std::nullopt;
+    return describe(nearest);
   }
 
   const Model& model() const { return model_; }
@@ -168,6 +151,7 @@ class ExactScene::Impl {
     hit.number = first_number_[nearest.instance] + nearest.face;
     hit.u = nearest.uv.x;
     hit.v = nearest.uv.y;
+    hit.in_crack = nearest.in_crack;
     return hit;
   }
 

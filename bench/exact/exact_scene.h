@@ -5,9 +5,8 @@
 // decided on the pcurves as trim_region.h says, and a point found is made exact by Newton's method on the
 // surface's own evaluator. It is slow.
 //
-// Cracks: where two faces meet, their pcurves agree only to within the edge's tolerance, and a ray may pass
-// between them. The edge is then a tube of that radius about its curve, as the file means it: a ray that
-// passes through it and meets nothing near is stopped there (edge_tubes.h, `Hit::in_tube`).
+// Cracks: where two faces meet, their pcurves agree with each other only to within the edge's tolerance, and
+// a ray could pass between them. What lies between is filled (crack_strips.h, `Hit::in_crack`).
 #ifndef DUPIN_BENCH_EXACT_EXACT_SCENE_H
 #define DUPIN_BENCH_EXACT_EXACT_SCENE_H
 
@@ -33,7 +32,7 @@ struct Hit {
   std::uint32_t face = 0;      ///< index in the part
   std::uint32_t number = 0;    ///< 1-based over all face instances, in the model's order
   double u = 0, v = 0;         ///< of the face's surface
-  bool in_tube = false;        ///< beside the faces, within an edge's tolerance
+  bool in_crack = false;       ///< between two faces that share an edge
 };
 
 /// The ray through the centre of a pixel; the direction's component along the view axis is 1, so that its

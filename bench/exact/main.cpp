@@ -46,7 +46,7 @@ void print_pixel(const Model& model, const exact::ExactScene& scene, const Camer
               hit->u, hit->v);
   std::printf("normal (%.9g, %.9g, %.9g), curvatures %.9g, %.9g, pixel %.6g%s\n", hit->normal.x,
               hit->normal.y, hit->normal.z, hit->k1, hit->k2, pixel_size(camera, hit->depth),
-              hit->in_tube ? ", within an edge's tolerance" : "");
+              hit->in_crack ? ", in a crack between faces" : "");
 }
 
 int run(const Options& options) {

@@ -105,39 +105,41 @@ TEST(ExactScene, PolesAndSeamsAreCovered) {
   }
 }
 
-/// Two squares in z = 0 that share an edge at x = 0 but stay `gap` apart: it is the right side of the first.
-Model two_squares(double gap, double tolerance) {
+/// Two squares in z = 0 that share the edge x = 0, from which their own borders stay half a gap away.
+Model two_squares(double gap) {
   Model model = testing::empty_model();
   const std::vector<ParameterRange> ranges(4, {0, 1});
   const auto square = [&](double x0, double x1) {
-    testing::add_face(model, {Plane{}}, {{x0, 0}, {x1, 1}});
-    const Vec2 c[4] = {{x0, 0}, {x1, 0}, {x1, 1}, {x0, 1}};
+    testing::add_face(model, {Plane{}}, {{std::min(x0, x1), 0}, {std::max(x0, x1), 1}});
+    const Vec2 c[4] = {{x0, 0}, {x0, 1}, {x1, 1}, {x1, 0}};
     std::vector<Curve2> sides;
     for (int i = 0; i < 4; ++i) sides.push_back({LineOf<Vec2>{c[i], c[(i + 1) % 4] - c[i]}});
-    testing::add_loop(model, model.parts[0].faces.size() - 1, sides, ranges, tolerance);
+    testing::add_loop(model, model.parts[0].faces.size() - 1, sides, ranges);
   };
-  square(-1, -gap / 2);
+  square(-gap / 2, -1);
   square(gap / 2, 1);
   Part& part = model.parts[0];
-  part.faces[1].loops[0][3].edge = part.faces[0].loops[0][1].edge;
-  part.faces[1].loops[0][3].reversed = true;
+  part.edges[0].curve = Curve3{LineOf<Vec3>{{0, 0, 0}, {0, 1, 0}}};
+  part.edges[0].tolerance = gap;
+  part.faces[1].loops[0][0].edge = 0;
   return model;
 }
 
-TEST(ExactScene, ACrackWithinTheEdgesToleranceIsClosed) {
-  const Line through{{0, 0.5, 3}, {0, 0, -1}};
-  const Model closed = two_squares(1e-4, 1e-4);
-  const auto hit = ExactScene(closed).cast(through, 0);
+TEST(ExactScene, ACrackBetweenFacesThatShareAnEdgeIsClosed) {
+  const Line through{{1e-5, 0.5, 3}, {0, 0, -1}};
+  Model model = two_squares(1e-4);
+  const auto hit = ExactScene(model).cast(through, 0);
   ASSERT_TRUE(hit);
-  EXPECT_TRUE(hit->in_tube);
+  EXPECT_TRUE(hit->in_crack);
   EXPECT_NEAR(hit->depth, 3, 1e-12);
   EXPECT_EQ(hit->number, 1U);
-  const Model open = two_squares(1e-4, 1e-5);
-  EXPECT_FALSE(ExactScene(open).cast(through, 0));
-  const auto beside = ExactScene(closed).cast({{0.2, 0.5, 3}, {0, 0, -1}}, 0);
+  const auto beside = ExactScene(model).cast({{0.2, 0.5, 3}, {0, 0, -1}}, 0);
   ASSERT_TRUE(beside);
-  EXPECT_FALSE(beside->in_tube);
-  EXPECT_FALSE(ExactScene(closed).cast({{-1.00005, 0.5, 3}, {0, 0, -1}}, 0)) << "an open edge is no tube";
+  EXPECT_FALSE(beside->in_crack);
+  EXPECT_FALSE(ExactScene(model).cast({{0.5, 1 + 1e-6, 3}, {0, 0, -1}}, 0)) << "a free edge is where it is";
+  model.parts[0].edges[0].curve.reset();
+  model.parts[0].faces[1].loops[0][0].edge = 4;  // no edge in common, and none that either is off from: a gap
+  EXPECT_FALSE(ExactScene(model).cast(through, 0));
 }
 
 TEST(ExactScene, OfCoincidentFacesTheFirstIsSeen) {
