@@ -32,8 +32,8 @@ Json finite(double x) {
 }
 
 Json quantiles(const Distribution& d) {
-  return {{"count", d.count}, {"mean", d.mean}, {"p50", d.p50}, {"p90", d.p90},
-          {"p99", d.p99},     {"p999", d.p999}, {"max", d.max}};
+  return {{"count", d.count},     {"mean", finite(d.mean)}, {"p50", finite(d.p50)}, {"p90", finite(d.p90)},
+          {"p99", finite(d.p99)}, {"p999", finite(d.p999)}, {"max", finite(d.max)}};
 }
 
 Json to_json(const GeometryMetrics& g) {
@@ -50,12 +50,14 @@ Json to_json(const PictureDifference& d) {
   Json json{{"width", d.width}, {"height", d.height}};
   if (d.color) {
     json["rmse"] = d.color->rmse;
+    json["rmse_covered"] = d.color->rmse_covered;
     json["psnr"] = finite(d.color->psnr);
     json["ssim"] = d.color->ssim;
     json["flip"] = d.color->flip;
   }
   json["covered_px"] = {d.covered_a, d.covered_b};
   json["silhouette_px"] = d.silhouette;
+  json["outline_px"] = d.outline_px.count ? quantiles(d.outline_px) : Json(nullptr);
   if (d.geometry) json["geometry"] = to_json(*d.geometry);
   return json;
 }
@@ -68,7 +70,8 @@ void print(const char* name, const char* unit, const Distribution& d) {
 
 void print_table(const PictureDifference& d) {
   if (d.color) {
-    std::printf("RMSE         %.4f of 255\nPSNR         ", d.color->rmse);
+    std::printf("RMSE         %.4f of 255, %.4f over covered pixels\nPSNR         ", d.color->rmse,
+                d.color->rmse_covered);
     std::printf(std::isfinite(d.color->psnr) ? "%.2f dB\n" : "infinite: the pictures are the same\n",
                 d.color->psnr);
     std::printf("SSIM         %.6f\nFLIP         %.6f\n", d.color->ssim, d.color->flip);
@@ -76,6 +79,7 @@ void print_table(const PictureDifference& d) {
   std::printf("silhouette   %llu pixels differ (%llu and %llu covered)\n",
               static_cast<unsigned long long>(d.silhouette), static_cast<unsigned long long>(d.covered_a),
               static_cast<unsigned long long>(d.covered_b));
+  print("outline", "pixels", d.outline_px);
   if (!d.geometry) return;
   const GeometryMetrics& g = *d.geometry;
   std::printf("interior     %llu pixels, %llu holes, %llu drawn outside, %llu normals opposed\n",

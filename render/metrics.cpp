@@ -78,18 +78,26 @@ std::vector<float> luma(const std::vector<float>& srgb) {
   return y;
 }
 
-ColorMetrics color_metrics(const Image& a, const Image& b) {
+ColorMetrics color_metrics(const Image& a, const Image& b, const std::vector<std::uint8_t>& in_a,
+                           const std::vector<std::uint8_t>& in_b) {
   const std::vector<float> ca = screen_colors(a), cb = screen_colors(b);
   const double pixels = static_cast<double>(a.pixels());
-  const double squares = sum_over_rows(a.width, a.height, [&](int x, int y) {
+  const auto square = [&](std::size_t pixel) {
     double sum = 0;
-    const std::size_t i =
-        3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width) + static_cast<std::size_t>(x));
-    for (std::size_t k = i; k < i + 3; ++k) sum += (ca[k] - cb[k]) * (ca[k] - cb[k]) * 255.0 * 255.0;
+    for (std::size_t k = 3 * pixel; k < 3 * pixel + 3; ++k)
+      sum += (ca[k] - cb[k]) * (ca[k] - cb[k]) * 255.0 * 255.0;
     return sum;
-  });
+  };
+  const auto index = [&](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width) + static_cast<std::size_t>(x);
+  };
+  const double squares = sum_over_rows(a.width, a.height, [&](int x, int y) { return square(index(x, y)); });
+  double covered = 0, covered_squares = 0;
+  for (std::size_t i = 0; i < in_a.size(); ++i)
+    if (in_a[i] || in_b[i]) covered += 1, covered_squares += square(i);
   ColorMetrics m;
   m.rmse = std::sqrt(squares / (3 * pixels));
+  m.rmse_covered = covered > 0 ? std::sqrt(covered_squares / (3 * covered)) : 0;
   m.psnr = m.rmse > 0 ? 20 * std::log10(255 / m.rmse) : std::numeric_limits<double>::infinity();
   const std::vector<float> ya = luma(ca), yb = luma(cb);
   m.ssim = sum_over_rows(a.width, a.height, Ssim(ya, yb, a.width, a.height)) / pixels;
@@ -179,7 +187,8 @@ Result<PictureDifference> compare(const Image& a, const Image& b, const CompareO
     result.covered_b += in_b[i];
     result.silhouette += in_a[i] != in_b[i];
   }
-  if (colors) result.color = color_metrics(a, b);
+  result.outline_px = outline_distances(in_a, in_b, a.width, a.height);
+  if (colors) result.color = color_metrics(a, b, in_a, in_b);
   if (depths) result.geometry = geometry_metrics(a, b, options);
   return result;
 }

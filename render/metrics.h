@@ -11,8 +11,9 @@ namespace dupin {
 
 /// Colors as a screen shows them (8-bit sRGB, over white where they are transparent).
 struct ColorMetrics {
-  double rmse = 0;  ///< over all pixels and R, G, B, in steps of 8 bits (0 … 255)
-  double psnr = 0;  ///< decibel; +inf for equal pictures
+  double rmse = 0;          ///< over all pixels and R, G, B, in steps of 8 bits (0 … 255)
+  double rmse_covered = 0;  ///< the same over the pixels that either picture covers; 0 where neither does
+  double psnr = 0;          ///< decibel; +inf for equal pictures
   double ssim =
       1;  ///< mean structural similarity of luma (Wang et al. 2004: Gaussian window, σ = 1.5, 11 × 11)
   double flip = 0;  ///< mean ꟻLIP of Andersson et al. 2020, 0 … 1, at 67 pixels a degree
@@ -45,7 +46,10 @@ struct GeometryMetrics {
 struct PictureDifference {
   int width = 0, height = 0;
   std::uint64_t covered_a = 0, covered_b = 0;
-  std::uint64_t silhouette = 0;             ///< pixels that only one of the two covers
+  std::uint64_t silhouette = 0;  ///< pixels that only one of the two covers
+  /// From every outline pixel of each (covered, beside one that is not) to the nearest of the other's, in
+  /// pixels: its largest is the Hausdorff distance. Infinite where only one has an outline.
+  Distribution outline_px;
   std::optional<ColorMetrics> color;        ///< where both have R, G, B
   std::optional<GeometryMetrics> geometry;  ///< where both have Z
 };

@@ -14,6 +14,10 @@ bool has_colors(const Image& image);
 /// 1 for every pixel that shows something.
 std::vector<std::uint8_t> coverage(const Image& image);
 
+/// PictureDifference::outline_px
+Distribution outline_distances(const std::vector<std::uint8_t>& covered_a,
+                               const std::vector<std::uint8_t>& covered_b, int width, int height);
+
 /// The edge of a pixel, in model units, at a depth, as the picture's file tells it or from the field of view.
 double pixel_edge(const Image& a, const Image& b, double depth, const CompareOptions& options);
 GeometryMetrics geometry_metrics(const Image& a, const Image& b, const CompareOptions& options);

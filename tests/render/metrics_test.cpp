@@ -44,6 +44,43 @@ TEST(ColorMetrics, OneWrongPixelCountsOnce) {
   b.channel("G").values[37] = 1;
   const auto d = compare(a, b, {});
   EXPECT_NEAR(d->color->rmse, 255 / std::sqrt(300.0), 1e-6);
+  EXPECT_NEAR(d->color->rmse_covered, 255 / std::sqrt(3.0), 1e-6) << "only B shows something, at one pixel";
+}
+
+/// Depth 1 in a rectangle, nothing elsewhere.
+Image rectangle(int size, int x0, int x1, int y0, int y1) {
+  Image image{size, size, {}};
+  image.channel("Z").values.assign(image.pixels(), kInfinity);
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x) image.channel("Z").values[static_cast<std::size_t>(y * size + x)] = 1;
+  return image;
+}
+
+TEST(Outline, DistancesAreThoseOfTheBorders) {
+  // B's left side is 3 pixels farther in, the rest is the same; the corner of A is 3 from B's nearest.
+  const Image a = rectangle(64, 10, 40, 20, 50), b = rectangle(64, 13, 40, 20, 50);
+  const auto d = compare(a, b, {});
+  ASSERT_TRUE(d.ok());
+  EXPECT_EQ(d->silhouette, 90U);
+  EXPECT_EQ(d->outline_px.max, 3);
+  EXPECT_EQ(d->outline_px.p50, 0);
+  EXPECT_EQ(d->outline_px.count, 4U * 29 + 2 * (26 + 29));
+  EXPECT_EQ(compare(a, a, {})->outline_px.max, 0);
+}
+
+TEST(Outline, DiagonalDistancesAreEuclidean) {
+  const auto d = compare(rectangle(64, 10, 11, 10, 11), rectangle(64, 13, 14, 14, 15), {});
+  EXPECT_NEAR(d->outline_px.max, 5, 1e-6);
+  EXPECT_EQ(d->outline_px.count, 2U);
+}
+
+TEST(Outline, IsInfiniteFromNothingAndNoneOfTwoNothings) {
+  const Image nothing = rectangle(32, 0, 0, 0, 0);
+  EXPECT_EQ(compare(nothing, nothing, {})->outline_px.count, 0U);
+  EXPECT_EQ(compare(rectangle(32, 5, 9, 5, 9), nothing, {})->outline_px.p50,
+            std::numeric_limits<double>::infinity());
+  const Image full = rectangle(32, 0, 32, 0, 32);
+  EXPECT_EQ(compare(full, full, {})->outline_px.count, 0U) << "the picture's border is no outline";
 }
 
 TEST(Flip, BlackAgainstWhiteIsThePapersValue) {
