@@ -15,13 +15,13 @@ Vec3 radial(const Frame3& f, const TrigJet& u, int i) {
 
 }  // namespace
 
-void evaluate_into(const Plane& plane, double u, double v, int order, Vec3* out) {
+void evaluate_into(const Plane& plane, double u, double v, int order, Vec3* out, Sides) {
   clear(order, out);
   out[0] = plane.frame.origin + plane.frame.x * u + plane.frame.y * v;
   if (order >= 1) out[jet_index(1, 0)] = plane.frame.x, out[jet_index(0, 1)] = plane.frame.y;
 }
 
-void evaluate_into(const Cylinder& cylinder, double u, double v, int order, Vec3* out) {
+void evaluate_into(const Cylinder& cylinder, double u, double v, int order, Vec3* out, Sides) {
   clear(order, out);
   const Frame3& f = cylinder.frame;
   const TrigJet trig(u, order);
@@ -30,7 +30,7 @@ void evaluate_into(const Cylinder& cylinder, double u, double v, int order, Vec3
   if (order >= 1) out[jet_index(0, 1)] = f.z;
 }
 
-void evaluate_into(const Cone& cone, double u, double v, int order, Vec3* out) {
+void evaluate_into(const Cone& cone, double u, double v, int order, Vec3* out, Sides) {
   clear(order, out);
   const Frame3& f = cone.frame;
   const TrigJet trig(u, order);
@@ -60,11 +60,11 @@ void revolved_circle(const Frame3& f, double major, double minor, double u, doub
 
 }  // namespace
 
-void evaluate_into(const Sphere& sphere, double u, double v, int order, Vec3* out) {
+void evaluate_into(const Sphere& sphere, double u, double v, int order, Vec3* out, Sides) {
   revolved_circle(sphere.frame, 0, sphere.radius, u, v, order, out);
 }
 
-void evaluate_into(const Torus& torus, double u, double v, int order, Vec3* out) {
+void evaluate_into(const Torus& torus, double u, double v, int order, Vec3* out, Sides) {
   revolved_circle(torus.frame, torus.major, torus.minor, u, v, order, out);
 }
 

@@ -83,11 +83,12 @@ void divide_by_weight(int any_order, Vec3* a, const double* w) {
 
 }  // namespace
 
-void evaluate_into(const BsplineSurface& s, double u, double v, int order, Vec3* out) {
+void evaluate_into(const BsplineSurface& s, double u, double v, int order, Vec3* out, Sides sides) {
   const int p = s.degree_u, q = s.degree_v;
-  u = into_domain(u, s.knots_u[p], s.knots_u[s.count_u], s.periodic_u);
-  v = into_domain(v, s.knots_v[q], s.knots_v[s.count_v], s.periodic_v);
-  const int span_u = find_span(s.knots_u, p, u), span_v = find_span(s.knots_v, q, v);
+  u = into_domain(u, s.knots_u[p], s.knots_u[s.count_u], s.periodic_u, sides.u_from_left);
+  v = into_domain(v, s.knots_v[q], s.knots_v[s.count_v], s.periodic_v, sides.v_from_left);
+  const int span_u = find_span(s.knots_u, p, u, sides.u_from_left);
+  const int span_v = find_span(s.knots_v, q, v, sides.v_from_left);
   double basis_u[(kMaxOrder + 1) * (kMaxDegree + 1)], basis_v[(kMaxOrder + 1) * (kMaxDegree + 1)];
   basis_derivatives(s.knots_u, p, span_u, u, order, basis_u);
   basis_derivatives(s.knots_v, q, span_v, v, order, basis_v);

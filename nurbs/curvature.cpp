@@ -5,7 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "surface.h"
+#include "precise.h"
+#include "shape_operator.h"
 
 namespace dupin {
 namespace {
@@ -17,21 +18,8 @@ constexpr double kUmbilic = 1e-12;
 constexpr double kParallel = 1e-14;
 /// |Su × Sv| below this part of what it is around the point: too few digits are left for second derivatives.
 constexpr double kSingular = 1e-5;
-
-/// The best projection of the x, y, z axes onto the tangent plane (the papers' rule for umbilics).
-Vec3 projected_axis(const Vec3& n) {
-  int best = 0;
-  for (int i = 1; i < 3; ++i)
-    if (std::abs(n[i]) < std::abs(n[best]) - 1e-12) best = i;
-  Vec3 axis;
-  axis[best] = 1;
-  return normalized(axis - n * n[best]);
-}
-
-Curvature undefined() {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  return {{nan, nan, nan}, {nan, nan, nan}, {nan, nan, nan}, nan, nan, Curvature::Kind::undefined};
-}
+/// The same, for splines to be evaluated in double-double arithmetic, which has digits enough.
+constexpr double kImprecise = 1e-3;
 
 /// a·b − c·d to nearly full precision (Kahan).
 double difference_of_products(double a, double b, double c, double d) {
@@ -43,37 +31,9 @@ Vec3 accurate_cross(const Vec3& a, const Vec3& b) {
           difference_of_products(a.x, b.y, a.y, b.x)};
 }
 
-/// The shape operator in the orthonormal tangent frame (e1, e2), and how much of it is rounding.
-struct Shape {
-  Vec3 n, e1, e2;
-  double w11 = 0, w12 = 0, w22 = 0;
-  double noise = 0;
-};
-
-Curvature diagonalize(const Shape& s) {
-  Curvature k;
-  k.n = s.n;
-  const double mean = 0.5 * (s.w11 + s.w22), half = 0.5 * (s.w11 - s.w22), r = std::hypot(half, s.w12);
-  if (r <= kUmbilic * std::abs(mean) + s.noise) {
-    k.kind = Curvature::Kind::umbilic;
-    k.d1 = projected_axis(s.n);
-    k.d2 = cross(s.n, k.d1);
-    k.k1 = k.k2 = mean;
-    return k;
-  }
-  // The eigenvector of mean + sign·r, written so that nothing cancels; the other value from the determinant.
-  const double sign = mean >= 0 ? 1 : -1, along = sign * half;
-  const double x = along >= 0 ? r + along : sign * s.w12, y = along >= 0 ? sign * s.w12 : r - along;
-  k.d1 = normalized(s.e1 * x + s.e2 * y);
-  k.d2 = cross(s.n, k.d1);
-  k.k1 = mean + sign * r;
-  k.k2 = (s.w11 * s.w22 - s.w12 * s.w12) / k.k1;
-  return k;
-}
-
 /// With pu = a e1, pv = b e1 + d e2: W = J⁻ᵀ II J⁻¹, J = [a b; 0 d].
-Shape shape_operator(const SurfaceJet& jet, const Vec3& normal) {
-  Shape s;
+ShapeOperator shape_operator(const SurfaceJet& jet, const Vec3& normal) {
+  ShapeOperator s;
   const double a = length(jet.pu), area = length(normal), d = area / a, slope = dot(jet.pu, jet.pv) / (a * a);
   s.n = normal / area;
   s.e1 = jet.pu / a;
@@ -147,7 +107,8 @@ Curvature limit_curvature(const Surface& surface, Vec2 uv, Vec2 way, double exte
   for (int i = 0; i < kNodes; ++i) {
     const Vec2 at = uv + way * std::ldexp(kFirstNode, -i);
     const Curvature k = principal_curvature(evaluate(surface, at.x, at.y, 2));
-    if (k.kind == Curvature::Kind::undefined || (i > 0 && !(dot(k.n, before) > 0))) return undefined();
+    if (k.kind == Curvature::Kind::undefined || (i > 0 && !(dot(k.n, before) > 0)))
+      return undefined_curvature();
     before = k.n;
     table[i] = limit_values(k);
     largest = std::max(largest, std::abs(k.k1));
@@ -163,9 +124,9 @@ Curvature limit_curvature(const Surface& surface, Vec2 uv, Vec2 way, double exte
   const LimitValues& t = table[kNodes - 1];
   for (std::size_t c = 0; c < 9; ++c) {
     const double scale = c < 6 ? kConverged * largest + 1e-6 / extent : kConverged;
-    if (!(std::abs(last_step[c]) <= scale)) return undefined();
+    if (!(std::abs(last_step[c]) <= scale)) return undefined_curvature();
   }
-  Shape s;
+  ShapeOperator s;
   s.n = normalized({t[6], t[7], t[8]});
   s.e1 = any_perpendicular(s.n);
   s.e2 = cross(s.n, s.e1);
@@ -181,12 +142,47 @@ Curvature limit_curvature(const Surface& surface, Vec2 uv, Vec2 way, double exte
 
 }  // namespace
 
+Vec3 projected_axis(const Vec3& n) {
+  int best = 0;
+  for (int i = 1; i < 3; ++i)
+    if (std::abs(n[i]) < std::abs(n[best]) - 1e-12) best = i;
+  Vec3 axis;
+  axis[best] = 1;
+  return normalized(axis - n * n[best]);
+}
+
+Curvature undefined_curvature() {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  return {{nan, nan, nan}, {nan, nan, nan}, {nan, nan, nan}, nan, nan, Curvature::Kind::undefined};
+}
+
+Curvature diagonalize(const ShapeOperator& s) {
+  Curvature k;
+  k.n = s.n;
+  const double mean = 0.5 * (s.w11 + s.w22), half = 0.5 * (s.w11 - s.w22), r = std::hypot(half, s.w12);
+  if (r <= kUmbilic * std::abs(mean) + s.noise) {
+    k.kind = Curvature::Kind::umbilic;
+    k.d1 = projected_axis(s.n);
+    k.d2 = cross(s.n, k.d1);
+    k.k1 = k.k2 = mean;
+    return k;
+  }
+  // The eigenvector of mean + sign·r, written so that nothing cancels; the other value from the determinant.
+  const double sign = mean >= 0 ? 1 : -1, along = sign * half;
+  const double x = along >= 0 ? r + along : sign * s.w12, y = along >= 0 ? sign * s.w12 : r - along;
+  k.d1 = normalized(s.e1 * x + s.e2 * y);
+  k.d2 = cross(s.n, k.d1);
+  k.k1 = mean + sign * r;
+  k.k2 = (s.w11 * s.w22 - s.w12 * s.w12) / k.k1;
+  return k;
+}
+
 Curvature principal_curvature(const SurfaceJet& jet) {
   const double a = length(jet.pu), b = length(jet.pv);
   Vec3 normal = cross(jet.pu, jet.pv);
   if (length(normal) < 1e-3 * a * b) normal = accurate_cross(jet.pu, jet.pv);
   const double area = length(normal);
-  if (!(area > kParallel * a * b) || !(area > 0) || !std::isfinite(area)) return undefined();
+  if (!(area > kParallel * a * b) || !(area > 0) || !std::isfinite(area)) return undefined_curvature();
   return diagonalize(shape_operator(jet, normal));
 }
 
@@ -200,6 +196,9 @@ Curvature principal_curvature(const Surface& surface, double u, double v, Vec2 i
   const double grown = (length(jet.pu) + length(jet.puu) * du + length(jet.puv) * dv) *
                        (length(jet.pv) + length(jet.puv) * du + length(jet.pvv) * dv);
   const double area = length(cross(jet.pu, jet.pv));
+  if (!(area > kImprecise * grown))
+    if (const auto* spline = std::get_if<BsplineSurface>(&surface.geometry))
+      if (const auto precise = precise_curvature(precise_jet(*spline, u, v, 2))) return *precise;
   if (area > kSingular * grown || (du == 0 && dv == 0)) return principal_curvature(jet);
   const Vec2 middle = uv + way * 0.5;
   const SurfaceJet ahead = evaluate(surface, middle.x, middle.y, 1);

@@ -13,7 +13,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <class V>
-void evaluate_kind(const LineOf<V>& line, double t, int order, V* out) {
+void evaluate_kind(const LineOf<V>& line, double t, int order, V* out, bool) {
   for (int k = 0; k <= order; ++k) out[k] = V{};
   out[0] = line.origin + line.direction * t;
   if (order >= 1) out[1] = line.direction;
@@ -27,17 +27,17 @@ void evaluate_conic(const V& center, const V& a, const V& b, double t, int order
 }
 
 template <class V>
-void evaluate_kind(const CircleOf<V>& c, double t, int order, V* out) {
+void evaluate_kind(const CircleOf<V>& c, double t, int order, V* out, bool) {
   evaluate_conic(c.center, c.x * c.radius, c.y * c.radius, t, order, out);
 }
 
 template <class V>
-void evaluate_kind(const EllipseOf<V>& e, double t, int order, V* out) {
+void evaluate_kind(const EllipseOf<V>& e, double t, int order, V* out, bool) {
   evaluate_conic(e.center, e.x * e.major, e.y * e.minor, t, order, out);
 }
 
 template <class V>
-void evaluate_kind(const ParabolaOf<V>& p, double t, int order, V* out) {
+void evaluate_kind(const ParabolaOf<V>& p, double t, int order, V* out, bool) {
   for (int k = 0; k <= order; ++k) out[k] = V{};
   out[0] = p.vertex + (p.x * (t * t / (4 * p.focal)) + p.y * t);
   if (order >= 1) out[1] = p.x * (t / (2 * p.focal)) + p.y;
@@ -45,7 +45,7 @@ void evaluate_kind(const ParabolaOf<V>& p, double t, int order, V* out) {
 }
 
 template <class V>
-void evaluate_kind(const HyperbolaOf<V>& h, double t, int order, V* out) {
+void evaluate_kind(const HyperbolaOf<V>& h, double t, int order, V* out, bool) {
   const double c = std::cosh(t), s = std::sinh(t);
   const V even = h.x * (h.major * c) + h.y * (h.minor * s), odd = h.x * (h.major * s) + h.y * (h.minor * c);
   for (int k = 0; k <= order; ++k) out[k] = k % 2 == 0 ? even : odd;
@@ -54,10 +54,10 @@ void evaluate_kind(const HyperbolaOf<V>& h, double t, int order, V* out) {
 
 /// Sums relative to an active pole, as for surfaces (bspline_surface.cpp).
 template <class V>
-void evaluate_kind(const BsplineOf<V>& s, double t, int order, V* out) {
+void evaluate_kind(const BsplineOf<V>& s, double t, int order, V* out, bool from_left) {
   const int p = s.degree, n = static_cast<int>(s.poles.size());
-  t = into_domain(t, s.knots[p], s.knots[n], s.periodic);
-  const int span = find_span(s.knots, p, t);
+  t = into_domain(t, s.knots[p], s.knots[n], s.periodic, from_left);
+  const int span = find_span(s.knots, p, t, from_left);
   double basis[(kMaxOrder + 1) * (kMaxDegree + 1)];
   basis_derivatives(s.knots, p, span, t, order, basis);
   const V reference = s.poles[span - p / 2];
@@ -95,10 +95,10 @@ void add_side(Vec3& p, const Vec3& side) {
 }
 
 template <class V>
-void evaluate_kind(const OffsetCurveOf<V>& offset, double t, int order, V* out) {
+void evaluate_kind(const OffsetCurveOf<V>& offset, double t, int order, V* out, bool from_left) {
   V base[kMaxOrder + 2];
   const int known = std::min(order + 1, kMaxOrder);
-  evaluate_into(*offset.base, t, known, base);
+  evaluate_into(*offset.base, t, known, base, from_left);
   // A curve's series is a surface's that does not depend on v.
   Vec3 side[jet_size(kMaxOrder)], unit[jet_size(kMaxOrder)];
   for (int k = 0; k < known; ++k)
@@ -176,11 +176,13 @@ double period_of(const CurveOf<V>& curve) {
 
 }  // namespace
 
-void evaluate_into(const Curve2& curve, double t, int order, Vec2* out) {
-  std::visit([&](const auto& geometry) { evaluate_kind(geometry, t, order, out); }, curve.geometry);
+void evaluate_into(const Curve2& curve, double t, int order, Vec2* out, bool from_left) {
+  std::visit([&](const auto& geometry) { evaluate_kind(geometry, t, order, out, from_left); },
+             curve.geometry);
 }
-void evaluate_into(const Curve3& curve, double t, int order, Vec3* out) {
-  std::visit([&](const auto& geometry) { evaluate_kind(geometry, t, order, out); }, curve.geometry);
+void evaluate_into(const Curve3& curve, double t, int order, Vec3* out, bool from_left) {
+  std::visit([&](const auto& geometry) { evaluate_kind(geometry, t, order, out, from_left); },
+             curve.geometry);
 }
 
 CurveJet<Vec2> evaluate(const Curve2& curve, double t, int order) {

@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "../core/status.h"
 #include "../core/vec.h"
 
 namespace dupin {
@@ -77,6 +78,14 @@ using Curve2 = CurveOf<Vec2>;
 using Curve3 = CurveOf<Vec3>;
 using Bspline2 = BsplineOf<Vec2>;
 using Bspline3 = BsplineOf<Vec3>;
+
+/// Coordinates, radii and knots beyond this, and weights beyond this or below its reciprocal, are refused:
+/// their products would leave the range of a double.
+inline constexpr double kMaxCoordinate = 1e60, kMaxWeight = 1e30;
+
+/// Ok, or what is wrong with it, with the value and its index (see surface.h).
+Status check(const Curve2& curve);
+Status check(const Curve3& curve);
 
 /// Position and derivatives to `order` (0 … 3). A B-spline is evaluated at t clamped to its domain, or
 /// wrapped into it if periodic. Where an offset's base has no tangent the result is not finite.

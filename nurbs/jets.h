@@ -38,8 +38,10 @@ struct TrigJet {
   }
 };
 
-/// t brought into [lo, hi]: wrapped if periodic, else clamped.
-inline double into_domain(double t, double lo, double hi, bool periodic) {
+/// t brought into [lo, hi]: wrapped if periodic, else clamped. A periodic spline's start is its end, seen
+/// `from_left`.
+inline double into_domain(double t, double lo, double hi, bool periodic, bool from_left = false) {
+  if (periodic && from_left && t == lo) return hi;
   if (t >= lo && t <= hi) return t;
   if (!periodic) return t < lo ? lo : t > hi ? hi : t;
   const double wrapped = t - (hi - lo) * std::floor((t - lo) / (hi - lo));
@@ -47,19 +49,19 @@ inline double into_domain(double t, double lo, double hi, bool periodic) {
 }
 
 // All write order + 1 entries (curves) or jet_size(order) entries (surfaces).
-void evaluate_into(const Curve2& curve, double t, int order, Vec2* out);
-void evaluate_into(const Curve3& curve, double t, int order, Vec3* out);
-void evaluate_into(const Surface& surface, double u, double v, int order, Vec3* out);
+void evaluate_into(const Curve2& curve, double t, int order, Vec2* out, bool from_left = false);
+void evaluate_into(const Curve3& curve, double t, int order, Vec3* out, bool from_left = false);
+void evaluate_into(const Surface& surface, double u, double v, int order, Vec3* out, Sides sides = {});
 
-void evaluate_into(const Plane& plane, double u, double v, int order, Vec3* out);
-void evaluate_into(const Cylinder& cylinder, double u, double v, int order, Vec3* out);
-void evaluate_into(const Cone& cone, double u, double v, int order, Vec3* out);
-void evaluate_into(const Sphere& sphere, double u, double v, int order, Vec3* out);
-void evaluate_into(const Torus& torus, double u, double v, int order, Vec3* out);
-void evaluate_into(const BsplineSurface& surface, double u, double v, int order, Vec3* out);
-void evaluate_into(const Revolution& surface, double u, double v, int order, Vec3* out);
-void evaluate_into(const Extrusion& surface, double u, double v, int order, Vec3* out);
-void evaluate_into(const OffsetSurface& surface, double u, double v, int order, Vec3* out);
+void evaluate_into(const Plane& plane, double u, double v, int order, Vec3* out, Sides = {});
+void evaluate_into(const Cylinder& cylinder, double u, double v, int order, Vec3* out, Sides = {});
+void evaluate_into(const Cone& cone, double u, double v, int order, Vec3* out, Sides = {});
+void evaluate_into(const Sphere& sphere, double u, double v, int order, Vec3* out, Sides = {});
+void evaluate_into(const Torus& torus, double u, double v, int order, Vec3* out, Sides = {});
+void evaluate_into(const BsplineSurface& surface, double u, double v, int order, Vec3* out, Sides sides);
+void evaluate_into(const Revolution& surface, double u, double v, int order, Vec3* out, Sides sides);
+void evaluate_into(const Extrusion& surface, double u, double v, int order, Vec3* out, Sides sides);
+void evaluate_into(const OffsetSurface& surface, double u, double v, int order, Vec3* out, Sides sides);
 
 }  // namespace dupin
 

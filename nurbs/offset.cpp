@@ -38,7 +38,7 @@ void evaluate_singular(const OffsetSurface& surface, double u, double v, int ord
 
 }  // namespace
 
-void evaluate_into(const OffsetSurface& surface, double u, double v, int order, Vec3* out) {
+void evaluate_into(const OffsetSurface& surface, double u, double v, int order, Vec3* out, Sides sides) {
   if (order >= kMaxOrder) {  // an offset of offsets deeper than the orders reach
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (int k = 0; k < jet_size(order); ++k) out[k] = {nan, nan, nan};
@@ -46,7 +46,7 @@ void evaluate_into(const OffsetSurface& surface, double u, double v, int order, 
   }
   const int base_order = std::max(order + 1, 2);
   Vec3 base[jet_size(kMaxOrder)], normal[jet_size(kMaxOrder)], unit[jet_size(kMaxOrder)];
-  evaluate_into(*surface.base, u, v, base_order, base);
+  evaluate_into(*surface.base, u, v, base_order, base, sides);
   normal_series(base, order, normal);
   if (vanishes(normal[0], base)) return evaluate_singular(surface, u, v, order, base[0], out);
   normalize_series(order, normal, unit);

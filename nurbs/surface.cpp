@@ -18,14 +18,15 @@ struct Overloaded : Fs... {
 
 }  // namespace
 
-void evaluate_into(const Surface& surface, double u, double v, int order, Vec3* out) {
-  std::visit([&](const auto& geometry) { evaluate_into(geometry, u, v, order, out); }, surface.geometry);
+void evaluate_into(const Surface& surface, double u, double v, int order, Vec3* out, Sides sides) {
+  std::visit([&](const auto& geometry) { evaluate_into(geometry, u, v, order, out, sides); },
+             surface.geometry);
 }
 
-SurfaceJet evaluate(const Surface& surface, double u, double v, int order) {
+SurfaceJet evaluate(const Surface& surface, double u, double v, int order, Sides sides) {
   order = std::clamp(order, 0, 3);
   Vec3 d[jet_size(3)];
-  evaluate_into(surface, u, v, order, d);
+  evaluate_into(surface, u, v, order, d, sides);
   return {d[0], d[1], d[2], d[3], d[4], d[5], d[6], d[7], d[8], d[9]};
 }
 

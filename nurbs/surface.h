@@ -15,6 +15,7 @@
 #include <variant>
 #include <vector>
 
+#include "../core/status.h"
 #include "../core/vec.h"
 #include "curve.h"
 
@@ -72,6 +73,11 @@ std::string_view kind_name(const Surface& surface);
 /// Plane, cylinder, cone or sphere: one quadric DP is the surface itself.
 bool is_quadric(const Surface& surface);
 
+/// Ok, or what is wrong, with the value and its index: a pole, weight, knot or radius that is not finite or
+/// out of range, knots that decrease or are too few, a degree of 0 or above kMaxDegree, a frame that is not
+/// orthonormal. Everything that takes a surface expects one that passes.
+Status check(const Surface& surface);
+
 /// The surface's point and partial derivatives. Members above the order that was asked for are zero.
 struct SurfaceJet {
   Vec3 p;
@@ -86,10 +92,15 @@ struct SurfaceJet {
 /// smallest weight) / (shortest knot span) for splines.
 inline constexpr double kEvaluateError = 1e-14;
 
-/// Point and derivatives to `order` (0 … 3). B-splines are clamped to their domain, or wrapped if periodic;
-/// at a knot the right-hand derivatives are meant. An offset is not finite where its base has no normal, not
-/// even as a limit.
-SurfaceJet evaluate(const Surface& surface, double u, double v, int order);
+/// Which of two one-sided derivatives is meant where the parameter is a knot (or the seam of a periodic
+/// spline).
+struct Sides {
+  bool u_from_left = false, v_from_left = false;
+};
+
+/// Point and derivatives to `order` (0 … 3). B-splines are clamped to their domain, or wrapped if periodic.
+/// An offset is not finite where its base has no normal, not even as a limit.
+SurfaceJet evaluate(const Surface& surface, double u, double v, int order, Sides sides = {});
 inline Vec3 point_at(const Surface& surface, double u, double v) {
   return evaluate(surface, u, v, 0).p;
 }
@@ -104,7 +115,7 @@ double period_v(const Surface& surface);
 /// frame. |k1| >= |k2|; d1, d2 are unit, d1 × d2 = n; a curvature is positive when the surface bends towards
 /// n.
 struct Curvature {
-  enum class Kind {
+  enum class Kind : unsigned char {
     regular,
     umbilic,         ///< k1 = k2 to rounding; d1 is the best projection of the x, y, z axes
     singular_limit,  ///< Su × Sv vanishes here; the limit along an interior direction was taken

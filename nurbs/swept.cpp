@@ -3,11 +3,11 @@
 
 namespace dupin {
 
-void evaluate_into(const Revolution& surface, double u, double v, int order, Vec3* out) {
+void evaluate_into(const Revolution& surface, double u, double v, int order, Vec3* out, Sides sides) {
   const Vec3& axis = surface.axis_direction;
   const TrigJet trig(u, order);
   Vec3 profile[kMaxOrder + 1];
-  evaluate_into(surface.profile, v, order, profile);
+  evaluate_into(surface.profile, v, order, profile, sides.v_from_left);
   profile[0] -= surface.axis_origin;
   for (int j = 0; j <= order; ++j) {
     const Vec3 along = axis * dot(axis, profile[j]), across = profile[j] - along,
@@ -18,9 +18,9 @@ void evaluate_into(const Revolution& surface, double u, double v, int order, Vec
   out[0] += surface.axis_origin;
 }
 
-void evaluate_into(const Extrusion& surface, double u, double v, int order, Vec3* out) {
+void evaluate_into(const Extrusion& surface, double u, double v, int order, Vec3* out, Sides sides) {
   Vec3 profile[kMaxOrder + 1];
-  evaluate_into(surface.profile, u, order, profile);
+  evaluate_into(surface.profile, u, order, profile, sides.u_from_left);
   for (int k = 0; k < jet_size(order); ++k) out[k] = Vec3{};
   for (int i = 0; i <= order; ++i) out[jet_index(i, 0)] = profile[i];
   out[0] += surface.direction * v;
