@@ -68,8 +68,8 @@ Wanted wanted(Compute compute, int max_order) {
   return w;
 }
 
-/// Hands out equally long arrays of one piece of memory: aligned to the widest lanes, and an odd number of cache lines
-/// apart, so that samples of several arrays do not compete for the same place in the cache.
+/// Hands out equally long arrays of one piece of memory: aligned to the widest lanes, and an odd number of
+/// cache lines apart, so that samples of several arrays do not compete for the same place in the cache.
 class Arrays {
  public:
   Arrays(std::size_t arrays, std::size_t count, std::vector<double>& memory) : count_(count) {
@@ -132,7 +132,9 @@ Outputs prepare(Compute compute, int max_order, std::size_t count, SurfaceSample
                 std::vector<double>& memory) {
   Outputs out;
   const Fields fields(samples);
-  const auto wanted_vectors = [&](const Fields::Vectors& f) { return has(compute, f.what) && f.order <= max_order; };
+  const auto wanted_vectors = [&](const Fields::Vectors& f) {
+    return has(compute, f.what) && f.order <= max_order;
+  };
   std::size_t arrays = 0;
   for (const auto& f : fields.vectors) arrays += wanted_vectors(f) ? 3 : 0;
   for (const auto& f : fields.numbers) arrays += has(compute, f.what) ? 1 : 0;
@@ -183,7 +185,8 @@ std::unique_ptr<BatchFamily> make_single_family(const Surface& surface) {
 
 class BatchEvaluator::Impl {
  public:
-  Impl(Surface surface, int max_order) : surface_(std::move(surface)), max_order_(std::clamp(max_order, 2, 3)) {
+  Impl(Surface surface, int max_order)
+      : surface_(std::move(surface)), max_order_(std::clamp(max_order, 2, 3)) {
     if (const auto* spline = std::get_if<BsplineSurface>(&surface_.geometry))
       family_ = make_spline_family(*spline, surface_, max_order_);
     else if (std::holds_alternative<OffsetSurface>(surface_.geometry))
@@ -219,7 +222,8 @@ void BatchEvaluator::run(std::span<const double> u, std::span<const double> v, s
   batch.out = prepare(options.compute, max_order, count, out, out.values_);
   const bool kinds = batch.wanted.normal || batch.wanted.curvature;
   if (kinds && out.kinds_.size() < count) out.kinds_.resize(count);
-  out.kind = kinds ? std::span<const Curvature::Kind>(out.kinds_).first(count) : std::span<const Curvature::Kind>{};
+  out.kind =
+      kinds ? std::span<const Curvature::Kind>(out.kinds_).first(count) : std::span<const Curvature::Kind>{};
   if (kinds) batch.out.kind = reinterpret_cast<std::uint8_t*>(out.kinds_.data());
   if (count == 0) return;
   if (grid)

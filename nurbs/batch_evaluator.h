@@ -1,20 +1,20 @@
-// Many points of a surface at once: positions, derivatives, normals and principal curvatures as arrays, in SIMD lanes
-// (AVX-512, AVX2, SSE4, NEON, whichever the machine has) and on several threads.
+// Many points of a surface at once: positions, derivatives, normals and principal curvatures as arrays, in
+// SIMD lanes (AVX-512, AVX2, SSE4, NEON, whichever the machine has) and on several threads.
 //
 //     Result<BatchEvaluator> surface = BatchEvaluator::make(face_surface);
 //     SurfaceSamples samples;
 //     surface->grid(us, vs, {.compute = Compute::points | Compute::curvatures}, samples);
 //     samples.k1[i * vs.size() + j]                                                     // at (us[i], vs[j])
 //
-// Splines, rational or not, of any degree (loops are unrolled for 1 to 5), and the analytic, swept and offset kinds.
-// The results do not depend on the instruction set, the number of threads, or the other points of the batch: every
-// operation is one that IEEE 754 rounds correctly, and sums are formed in one order. (Sines and cosines are the
-// standard library's.) `evaluate` and `principal_curvature` in surface.h are the same surface one point at a time;
-// their results differ from these by rounding.
+// Splines, rational or not, of any degree (loops are unrolled for 1 to 5), and the analytic, swept and offset
+// kinds. The results do not depend on the instruction set, the number of threads, or the other points of the
+// batch: every operation is one that IEEE 754 rounds correctly, and sums are formed in one order. (Sines and
+// cosines are the standard library's.) `evaluate` and `principal_curvature` in surface.h are the same surface
+// one point at a time; their results differ from these by rounding.
 //
 // Where double precision would lose the curvature (close to a pole or a collapsed edge, for almost parallel
-// partials) splines are evaluated in double-double arithmetic; at singular points the limit is taken. Curvature::Kind
-// says which, sample by sample.
+// partials) splines are evaluated in double-double arithmetic; at singular points the limit is taken.
+// Curvature::Kind says which, sample by sample.
 #ifndef DUPIN_NURBS_BATCH_EVALUATOR_H
 #define DUPIN_NURBS_BATCH_EVALUATOR_H
 
@@ -51,14 +51,15 @@ struct Vec3Array {
   Vec3 operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
 };
 
-/// One entry a sample in the arrays that were asked for; the others are empty. They all lie in one piece of memory,
-/// which batches that are no larger use again.
+/// One entry a sample in the arrays that were asked for; the others are empty. They all lie in one piece of
+/// memory, which batches that are no larger use again.
 struct SurfaceSamples {
   std::size_t count = 0;
   Vec3Array p, pu, pv, puu, puv, pvv, puuu, puuv, puvv, pvvv;
   Vec3Array n, d1, d2;  ///< unit; d1 × d2 = n
   std::span<const double> k1, k2, mean, gauss;
-  /// With normals, curvatures, directions or mean_and_gauss: what the sample is. Where `undefined`, these are NaN.
+  /// With normals, curvatures, directions or mean_and_gauss: what the sample is. Where `undefined`, these are
+  /// NaN.
   std::span<const Curvature::Kind> kind;
 
   SurfaceSamples() = default;

@@ -32,13 +32,15 @@ class BatchFamily {
   virtual void scattered(const Batch& batch) const = 0;
 };
 
-std::unique_ptr<BatchFamily> make_spline_family(const BsplineSurface& spline, const Surface& surface, int order);
+std::unique_ptr<BatchFamily> make_spline_family(const BsplineSurface& spline, const Surface& surface,
+                                                int order);
 /// All kinds that sweep a profile, and planes.
 std::unique_ptr<BatchFamily> make_swept_family(const Surface& surface);
 /// One sample at a time: offsets.
 std::unique_ptr<BatchFamily> make_single_family(const Surface& surface);
 
-/// At a point whose curvature double precision does not see: with limits, taken towards the middle of the domain.
+/// At a point whose curvature double precision does not see: with limits, taken towards the middle of the
+/// domain.
 Curvature careful_curvature(const Surface& surface, double u, double v);
 
 }  // namespace dupin

@@ -1,4 +1,5 @@
-// Included once for every instruction set by batch_kernels.cpp: the kernels as templates on a vector of lanes V.
+// Included once for every instruction set by batch_kernels.cpp: the kernels as templates on a vector of lanes
+// V.
 //
 // V has a count, loads and stores, + − × ÷, square roots, comparisons into masks, and choices by them.
 #if defined(DUPIN_NURBS_BATCH_KERNELS_INL_H) == defined(HWY_TARGET_TOGGLE)
@@ -14,8 +15,8 @@
 #include <limits>
 #include <new>
 
+#include <hwy/highway.h>
 #include "batch_kernels.h"
-#include "hwy/highway.h"
 #include "knots.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -186,11 +187,12 @@ HWY_INLINE void put_kinds(typename V::Mask umbilic, typename V::Mask safe, const
 }
 
 // Of a rational surface S = A/w everything up to curvatures is computed from w² Su = w Au − A wu, w² Sv, and
-// w² (n·Suu) = n·(w Auu − A wuu) and so on (along the normal Su and Sv vanish, and with them the rest of the quotient
-// rule): no division stands before the cross product. The shape operator is w² times what these give.
+// w² (n·Suu) = n·(w Auu − A wuu) and so on (along the normal Su and Sv vanish, and with them the rest of the
+// quotient rule): no division stands before the cross product. The shape operator is w² times what these
+// give.
 //
-// With a = |Su| and d = |Su × Sv| / a, it needs 1/a², 1/(ad) and 1/d² alone, and the first direction one more root:
-// lengths are left squared where they can be.
+// With a = |Su| and d = |Su × Sv| / a, it needs 1/a², 1/(ad) and 1/d² alone, and the first direction one more
+// root: lengths are left squared where they can be.
 
 /// First derivatives (times w²) and normal, and what the second form needs of them.
 template <class V>
@@ -348,7 +350,8 @@ HWY_INLINE void finish(const Cell& cell, const Wanted& wanted, const V* values, 
   }
 }
 
-/// One step of the recurrence of Bernstein polynomials, whose sums are all of positive terms: from degree q to q + 1.
+/// One step of the recurrence of Bernstein polynomials, whose sums are all of positive terms: from degree q
+/// to q + 1.
 template <class V>
 HWY_INLINE void raise_bernstein(V s, V r, int q, V* current) {
   current[q + 1] = current[q] * s;
@@ -403,7 +406,8 @@ void basis_block(const BasisJob& job, const double* t, std::size_t n) {
 
 /// A net summed over u: `width` numbers, in steps of two blocks of lanes. kDegree −1: not known here.
 template <class V, int kDegree>
-HWY_INLINE void sum_rows(const double* poles, std::size_t width, int degree_u, const double* values, double* to) {
+HWY_INLINE void sum_rows(const double* poles, std::size_t width, int degree_u, const double* values,
+                         double* to) {
   const int degree = kDegree >= 0 ? kDegree : degree_u;
   for (double* const end = to + width; to < end; to += 2 * V::kCount, poles += 2 * V::kCount) {
     V first = V::all(values[0]) * V::load(poles), second = V::all(values[0]) * V::load(poles + V::kCount);
@@ -531,9 +535,9 @@ void row_of_degree(const RowJob& job) {
   double rows[10 * (kMaxDegree + 1) * 4 + kPadding];
   std::array<const double*, 10> at;
   contract_u<V, kComponents, kOrder>(job, rows, at);
-  in_blocks<V>(job.count, *job.out, job.first, [&](std::size_t n, const Outputs& out, std::size_t to) DUPIN_LANES {
-    row_block<V, kDegree, kComponents, kOrder>(job, at, n, out, to);
-  });
+  in_blocks<V>(job.count, *job.out, job.first,
+               [&](std::size_t n, const Outputs& out, std::size_t to)
+                   DUPIN_LANES { row_block<V, kDegree, kComponents, kOrder>(job, at, n, out, to); });
 }
 
 /// Loops are unrolled where second derivatives are wanted of a usual degree.
@@ -558,11 +562,12 @@ void row_of_components(const RowJob& job) {
   }
 }
 
-/// The same sums as a row's, in the same order, with values of u that differ from lane to lane. Degrees −1: not known
-/// when compiling.
+/// The same sums as a row's, in the same order, with values of u that differ from lane to lane. Degrees −1:
+/// not known when compiling.
 template <class V, int kComponents, int kDegreeU, int kDegreeV>
 HWY_INLINE void sum_net(const Net& net, const double* poles, const V* u, const V* v, V* h) {
-  const int degree_u = kDegreeU >= 0 ? kDegreeU : net.degree_u, degree_v = kDegreeV >= 0 ? kDegreeV : net.degree_v;
+  const int degree_u = kDegreeU >= 0 ? kDegreeU : net.degree_u,
+            degree_v = kDegreeV >= 0 ? kDegreeV : net.degree_v;
   const int width = (degree_v + 1) * kComponents;
   const auto column = [&](int j, V* s) DUPIN_LANES {
     const double* pole = poles + j * kComponents;
@@ -591,8 +596,10 @@ HWY_INLINE void sum_derivative(const PointsJob& job, const V* basis_u, const V* 
     for (int c = 0; c < kComponents; ++c) sum[c] = V::all(0);
     return;
   }
-  constexpr int kU = kDegree > 0 && !kZero ? kDegree - kA : -1, kV = kDegree > 0 && !kZero ? kDegree - kB : -1;
-  sum_net<V, kComponents, kU, kV>(net, job.cell->poles + net.offset, basis_u + basis_row(layout.degree_u, kA, 0),
+  constexpr int kU = kDegree > 0 && !kZero ? kDegree - kA : -1,
+                kV = kDegree > 0 && !kZero ? kDegree - kB : -1;
+  sum_net<V, kComponents, kU, kV>(net, job.cell->poles + net.offset,
+                                  basis_u + basis_row(layout.degree_u, kA, 0),
                                   basis_v + basis_row(layout.degree_v, kB, 0), sum);
 }
 
@@ -630,9 +637,10 @@ void points_of_degree(const PointsJob& job) {
   const bool few = job.count < V::kCount;
   for (std::size_t i = 0; few && i < V::kCount; ++i)
     u[i] = job.u[std::min(i, job.count - 1)], v[i] = job.v[std::min(i, job.count - 1)];
-  in_blocks<V>(job.count, *job.out, job.first, [&](std::size_t n, const Outputs& out, std::size_t to) DUPIN_LANES {
-    points_block<V, kComponents, kOrder, kDegree>(job, few ? u : job.u + n, few ? v : job.v + n, out, to);
-  });
+  in_blocks<V>(
+      job.count, *job.out, job.first, [&](std::size_t n, const Outputs& out, std::size_t to) DUPIN_LANES {
+        points_block<V, kComponents, kOrder, kDegree>(job, few ? u : job.u + n, few ? v : job.v + n, out, to);
+      });
 }
 
 template <class V, int kComponents>
@@ -677,9 +685,8 @@ HWY_INLINE Turn<V> turn_at(const SweptJob& job, std::size_t n) {
 template <class V>
 HWY_INLINE void swept_frame(const SweptJob& job, const Turn<V>& turn, std::size_t n, const Outputs& out,
                             std::size_t to) {
-  const auto get = [&](const double* values) DUPIN_LANES {
-    return job.profile_stride ? V::load(values + n) : V::all(*values);
-  };
+  const auto get = [&](const double* values)
+                       DUPIN_LANES { return job.profile_stride ? V::load(values + n) : V::all(*values); };
   const auto vector = [&](int i) DUPIN_LANES {
     return turn(get(job.frame[i]), get(job.frame[i + 1]), get(job.frame[i + 2]));
   };
@@ -745,7 +752,9 @@ HWY_INLINE void swept_block(const SweptJob& job, std::size_t n, const Outputs& o
 
 template <class V>
 void swept_of(const SweptJob& job) {
-  in_blocks<V>(job.count, *job.out, job.first, [&](std::size_t n, const Outputs& out, std::size_t to) DUPIN_LANES { swept_block<V>(job, n, out, to); });
+  in_blocks<V>(job.count, *job.out, job.first,
+               [&](std::size_t n, const Outputs& out, std::size_t to)
+                   DUPIN_LANES { swept_block<V>(job, n, out, to); });
 }
 
 template <class V>

@@ -1,11 +1,12 @@
 #include "batch_kernels.h"
 
-// Compiles this file once for every instruction set that matters; scalable vectors cannot be members of a struct.
+// Compiles this file once for every instruction set that matters; scalable vectors cannot be members of a
+// struct.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "batch_kernels.cpp"
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 // clang-format off: the order matters
-#include "hwy/foreach_target.h"
+#include <hwy/foreach_target.h>
 #include "batch_kernels-inl.h"
 // clang-format on
 

@@ -1,8 +1,8 @@
 // Inside the folder: the loops of the batch evaluator that run in SIMD lanes, and their scalar twin.
 //
 // One source, batch_kernels-inl.h, is compiled for every instruction set and once for plain doubles. It uses
-// additions, multiplications, divisions and square roots alone, each rounded on its own: whichever of them runs
-// gives the same results to the last bit.
+// additions, multiplications, divisions and square roots alone, each rounded on its own: whichever of them
+// runs gives the same results to the last bit.
 #ifndef DUPIN_NURBS_BATCH_KERNELS_H
 #define DUPIN_NURBS_BATCH_KERNELS_H
 
@@ -120,9 +120,9 @@ struct PointsJob {
   std::size_t first = 0;  ///< the first point's sample
 };
 
-/// A surface of revolution, or an extrusion: derivatives of its profile, and what is constant along the sweep,
-/// in components along the turning (fixed) axes. profile[3k + c] is component c of the k-th derivative.
-/// Everything is an array; a stride of 0 repeats one value.
+/// A surface of revolution, or an extrusion: derivatives of its profile, and what is constant along the
+/// sweep, in components along the turning (fixed) axes. profile[3k + c] is component c of the k-th
+/// derivative. Everything is an array; a stride of 0 repeats one value.
 struct SweptJob {
   bool turned = false;
   std::array<const double*, 12> profile{};

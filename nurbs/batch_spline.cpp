@@ -36,7 +36,8 @@ struct Axis {
   std::size_t stride = 0;
 };
 
-Axis make_axis(const SpanTable& table, std::span<const double> parameters, bool from_left, std::size_t longest) {
+Axis make_axis(const SpanTable& table, std::span<const double> parameters, bool from_left,
+               std::size_t longest) {
   Axis axis;
   axis.t.reserve(parameters.size());
   kernels::LocalRange here{1, 0};
@@ -133,43 +134,50 @@ class SplineFamily : public BatchFamily {
     const int order = batch.wanted.order;
     add_basis(cells_.u(), spline_.degree_u, order, true, batch.scalar, u);
     add_basis(cells_.v(), spline_.degree_v, order, false, batch.scalar, v);
-    parallel_for(u.runs.size(), [&](std::size_t task) {
-      const Run& in_u = u.runs[task];
-      std::vector<double> scratch;
-      for (const Run& in_v : v.runs) {
-        const Cell cell = cells_.cell(in_u.cell, in_v.cell, scratch);
-        for (std::size_t i = in_u.first; i < in_u.first + in_u.count; ++i) {
-          const std::size_t first = i * v.t.size() + in_v.first;
-          kernels::row({&cell, &u.basis[i * u.stride], &v.basis[in_v.first], v.stride, in_v.count, batch.wanted,
-                        &batch.out, first},
-                       batch.scalar);
-          repair(batch, in_v.count, first, [&](std::size_t k) { return Vec2{u.t[i], v.t[in_v.first + k]}; });
-        }
-      }
-    }, grain(v));
+    parallel_for(
+        u.runs.size(),
+        [&](std::size_t task) {
+          const Run& in_u = u.runs[task];
+          std::vector<double> scratch;
+          for (const Run& in_v : v.runs) {
+            const Cell cell = cells_.cell(in_u.cell, in_v.cell, scratch);
+            for (std::size_t i = in_u.first; i < in_u.first + in_u.count; ++i) {
+              const std::size_t first = i * v.t.size() + in_v.first;
+              kernels::row({&cell, &u.basis[i * u.stride], &v.basis[in_v.first], v.stride, in_v.count,
+                            batch.wanted, &batch.out, first},
+                           batch.scalar);
+              repair(batch, in_v.count, first, [&](std::size_t k) {
+                return Vec2{u.t[i], v.t[in_v.first + k]};
+              });
+            }
+          }
+        },
+        grain(v));
   }
 
   void grid_of_points(const Batch& batch, const Axis& u, const Axis& v) const {
     std::size_t longest = 0;
     for (const Run& run : v.runs) longest = std::max(longest, run.count);
-    parallel_for(u.runs.size(), [&](std::size_t task) {
-      const Run& in_u = u.runs[task];
-      std::vector<double> scratch, at_u(in_u.count * longest), at_v(at_u.size());
-      const Gather gather(batch.out, at_u.size());
-      for (const Run& in_v : v.runs) {
-        const std::size_t count = in_u.count * in_v.count;
-        for (std::size_t k = 0; k < count; ++k) {
-          at_u[k] = u.t[in_u.first + k / in_v.count];
-          at_v[k] = v.t[in_v.first + k % in_v.count];
-        }
-        const Cell cell = cells_.cell(in_u.cell, in_v.cell, scratch);
-        points(batch, cell, in_u.cell, in_v.cell, at_u.data(), at_v.data(), count,
-               gather.outputs(), 0);
-        gather.scatter(count, batch.out, [&](std::size_t k) {
-          return (in_u.first + k / in_v.count) * v.t.size() + in_v.first + k % in_v.count;
-        });
-      }
-    }, grain(v));
+    parallel_for(
+        u.runs.size(),
+        [&](std::size_t task) {
+          const Run& in_u = u.runs[task];
+          std::vector<double> scratch, at_u(in_u.count * longest), at_v(at_u.size());
+          const Gather gather(batch.out, at_u.size());
+          for (const Run& in_v : v.runs) {
+            const std::size_t count = in_u.count * in_v.count;
+            for (std::size_t k = 0; k < count; ++k) {
+              at_u[k] = u.t[in_u.first + k / in_v.count];
+              at_v[k] = v.t[in_v.first + k % in_v.count];
+            }
+            const Cell cell = cells_.cell(in_u.cell, in_v.cell, scratch);
+            points(batch, cell, in_u.cell, in_v.cell, at_u.data(), at_v.data(), count, gather.outputs(), 0);
+            gather.scatter(count, batch.out, [&](std::size_t k) {
+              return (in_u.first + k / in_v.count) * v.t.size() + in_v.first + k % in_v.count;
+            });
+          }
+        },
+        grain(v));
   }
 
   void scattered_task(const Batch& batch, std::size_t first, std::size_t count) const {
@@ -207,14 +215,16 @@ class SplineFamily : public BatchFamily {
     std::vector<std::uint32_t> next(cells + 1, 0);
     for (std::size_t cell : cell_of) ++next[cell + 1];
     std::partial_sum(next.begin(), next.end(), next.begin());
-    for (std::size_t i = 0; i < cell_of.size(); ++i) order[next[cell_of[i]]++] = static_cast<std::uint32_t>(i);
+    for (std::size_t i = 0; i < cell_of.size(); ++i)
+      order[next[cell_of[i]]++] = static_cast<std::uint32_t>(i);
     return order;
   }
 
   void points(const Batch& batch, const Cell& cell, std::size_t in_u, std::size_t in_v, const double* u,
               const double* v, std::size_t count, const Outputs& out, std::size_t first) const {
-    kernels::points({&cell, u, v, count, cells_.u().range(in_u), cells_.v().range(in_v), batch.wanted, &out, first},
-                    batch.scalar);
+    kernels::points(
+        {&cell, u, v, count, cells_.u().range(in_u), cells_.v().range(in_v), batch.wanted, &out, first},
+        batch.scalar);
     Batch here = batch;
     here.out = out;
     repair(here, count, first, [&](std::size_t k) { return Vec2{u[k], v[k]}; });

@@ -1,6 +1,6 @@
-// Batches of everything that a profile sweeps: about an axis (cylinder, cone, sphere, torus, revolution) or along a
-// line (plane, extrusion). What a rotation or translation does not change, curvatures above all, is computed once for a
-// parameter of the profile, in axes that go with it.
+// Batches of everything that a profile sweeps: about an axis (cylinder, cone, sphere, torus, revolution) or
+// along a line (plane, extrusion). What a rotation or translation does not change, curvatures above all, is
+// computed once for a parameter of the profile, in axes that go with it.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -17,7 +17,8 @@ using kernels::SweptJob;
 constexpr std::size_t kSamplesATask = 8192;
 /// Profiles no farther from a plane through the axis than this part of their size are in it.
 constexpr double kInPlane = 1e-13;
-/// Closer to the axis than this part of the profile's distance from the axis' origin, the radius is rounding alone.
+/// Closer to the axis than this part of the profile's distance from the axis' origin, the radius is rounding
+/// alone.
 constexpr double kOnAxis = 1e-14;
 
 /// One parameter of the profile: derivatives, and the principal frame, in the sweep's axes.
@@ -218,7 +219,8 @@ class MovedProfile : public Profile {
     Station s;
     evaluate_into(profile_, u, 3, s.d, from_left);
     const Vec3& direction = sweep_.direction;
-    const Vec3 normal = cross(s.d[1], direction), across = cross(direction, normal);  // Su less its part along
+    const Vec3 normal = cross(s.d[1], direction),
+               across = cross(direction, normal);  // Su less its part along
     const double l = length(normal);
     if (!(l > 1e-12 * length(s.d[1]))) {
       s.k = careful();
@@ -261,7 +263,8 @@ class Stations {
   void set(std::size_t i, const Station& s) {
     const Vec3* const vectors[] = {&s.d[0], &s.d[1], &s.d[2], &s.d[3], &s.k.n, &s.k.d1, &s.k.d2};
     for (std::size_t a = 0; a < 7; ++a)
-      for (int c = 0; c < 3; ++c) values_[(3 * a + static_cast<std::size_t>(c)) * count_ + i] = (*vectors[a])[c];
+      for (int c = 0; c < 3; ++c)
+        values_[(3 * a + static_cast<std::size_t>(c)) * count_ + i] = (*vectors[a])[c];
     values_[21 * count_ + i] = s.k.k1;
     values_[22 * count_ + i] = s.k.k2;
     kinds_[i] = static_cast<std::uint8_t>(s.k.kind);

@@ -1,5 +1,5 @@
-// Inside the folder: numbers of about 32 decimal digits as unevaluated sums of two doubles (Dekker; Hida, Li and
-// Bailey), for the few points at which second derivatives are lost to cancellation in double.
+// Inside the folder: numbers of about 32 decimal digits as unevaluated sums of two doubles (Dekker; Hida, Li
+// and Bailey), for the few points at which second derivatives are lost to cancellation in double.
 #ifndef DUPIN_NURBS_DOUBLE_DOUBLE_H
 #define DUPIN_NURBS_DOUBLE_DOUBLE_H
 

@@ -117,7 +117,15 @@ SurfaceJet PreciseJet::rounded() const {
   const auto at = [this](int i) { return dupin::rounded(d[static_cast<std::size_t>(i)]); };
   const auto sum = [this](int c, double origin) { return (d[0][static_cast<std::size_t>(c)] + origin).hi; };
   return {{sum(0, reference.x), sum(1, reference.y), sum(2, reference.z)},
-          at(1), at(2), at(3), at(4), at(5), at(6), at(7), at(8), at(9)};
+          at(1),
+          at(2),
+          at(3),
+          at(4),
+          at(5),
+          at(6),
+          at(7),
+          at(8),
+          at(9)};
 }
 
 PreciseJet precise_jet(const BsplineSurface& s, double u, double v, int order, Sides sides) {

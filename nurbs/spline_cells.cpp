@@ -51,7 +51,8 @@ SpanTable::SpanTable(const std::vector<double>& knots, int degree, bool periodic
 std::size_t SpanTable::find(double t, bool from_left) const {
   const double position = (t - bounds_.front()) * scale_;
   const std::size_t last = spans_.size() - 1;
-  std::size_t cell = position > 0 ? guess_[std::min(static_cast<std::size_t>(position), guess_.size() - 1)] : 0;
+  std::size_t cell =
+      position > 0 ? guess_[std::min(static_cast<std::size_t>(position), guess_.size() - 1)] : 0;
   if (from_left) {
     while (cell > 0 && t <= bounds_[cell]) --cell;
     while (cell < last && t > bounds_[cell + 1]) ++cell;
@@ -91,8 +92,8 @@ NetLayout make_layout(const BsplineSurface& s, int order) {
   return layout;
 }
 
-/// Differences along one direction of `lines` rows of `width` doubles: poles of the next derivative, in place.
-/// `degree` is that of what is differentiated.
+/// Differences along one direction of `lines` rows of `width` doubles: poles of the next derivative, in
+/// place. `degree` is that of what is differentiated.
 void differentiate(double* poles, int degree, std::size_t stride, std::size_t lines, std::size_t line_stride,
                    std::size_t width, const std::vector<double>& knots, int span) {
   for (int r = 0; r < degree; ++r) {

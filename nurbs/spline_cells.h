@@ -1,5 +1,6 @@
-// Inside the folder: a spline surface as Bézier cells, each with the poles of its derivatives up to an order, ready
-// to be summed with Bernstein values, which are positive: nothing cancels but what cancels in the surface itself.
+// Inside the folder: a spline surface as Bézier cells, each with the poles of its derivatives up to an order,
+// ready to be summed with Bernstein values, which are positive: nothing cancels but what cancels in the
+// surface itself.
 #ifndef DUPIN_NURBS_SPLINE_CELLS_H
 #define DUPIN_NURBS_SPLINE_CELLS_H
 

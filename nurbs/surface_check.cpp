@@ -65,12 +65,14 @@ Reason check_knots(const std::vector<double>& knots, int degree, std::size_t pol
     return "a spline has a wrong number of knots (" + number(knots.size()) + ", not " +
            number(poles + order) + ")";
   for (std::size_t i = 0; i < knots.size(); ++i) {
-    if (!usable(knots[i])) return "a spline's knots are not finite: knot " + number(i) + " is " + text(knots[i]);
+    if (!usable(knots[i]))
+      return "a spline's knots are not finite: knot " + number(i) + " is " + text(knots[i]);
     if (i > 0 && knots[i] < knots[i - 1])
       return "a spline's knots decrease: knot " + number(i) + " is " + text(knots[i]) + " after " +
              text(knots[i - 1]);
   }
-  if (!(knots[order - 1] < knots[poles])) return "a spline's domain is empty: all of it is " + text(knots[poles]);
+  if (!(knots[order - 1] < knots[poles]))
+    return "a spline's domain is empty: all of it is " + text(knots[poles]);
   return {};
 }
 
@@ -157,8 +159,10 @@ struct SurfaceChecker {
              std::to_string(s.count_v) + ")";
     const std::size_t count_u = static_cast<std::size_t>(s.count_u),
                       count_v = static_cast<std::size_t>(s.count_v);
-    if (Reason reason = check_knots(s.knots_u, s.degree_u, count_u); !reason.empty()) return std::string("in u ").append(reason);
-    if (Reason reason = check_knots(s.knots_v, s.degree_v, count_v); !reason.empty()) return std::string("in v ").append(reason);
+    if (Reason reason = check_knots(s.knots_u, s.degree_u, count_u); !reason.empty())
+      return std::string("in u ").append(reason);
+    if (Reason reason = check_knots(s.knots_v, s.degree_v, count_v); !reason.empty())
+      return std::string("in v ").append(reason);
     if (s.poles.size() != count_u * count_v)
       return "a spline surface has a wrong number of poles (" + number(s.poles.size()) + ", not " +
              number(count_u) + " by " + number(count_v) + ")";

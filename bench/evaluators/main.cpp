@@ -1,10 +1,11 @@
 // Points of spline surfaces: Dupin's batches beside Open CASCADE's and SISL's evaluators.
 //
-// All sides get the same surfaces and the same parameters and take turns; the median of the runs counts. Open CASCADE
-// is asked the way its manual does: GeomAdaptor_Surface::D2 (which caches the span it is in) for derivatives, one
-// GeomLProp_SLProps whose parameters are set point by point for normals, both curvatures and both directions. SISL's
-// s1421 gives derivatives to second order and the normal. Dupin's results are stored as arrays; the peers' are summed
-// up.
+// All sides get the same surfaces and the same parameters and take turns; the median of the runs counts. Open
+// CASCADE is asked the way its manual does: GeomAdaptor_Surface::D2 (which caches the span it is in) for
+// derivatives, one GeomLProp_SLProps whose parameters are set point by point for normals, both curvatures and
+// both directions. SISL's s1421 gives derivatives to second order and the normal. Dupin's results are stored
+// as arrays; the peers' are summed up.
+#include <sisl.h>
 #include <GeomAdaptor_Surface.hxx>
 #include <GeomLProp_SLProps.hxx>
 #include <Geom_BSplineSurface.hxx>
@@ -14,14 +15,13 @@
 #include <TColgp_Array2OfPnt.hxx>
 #include <gp_Dir.hxx>
 #include <gp_Vec.hxx>
-#include <sisl.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "../../core/parallel.h"
 #include "../../nurbs/batch_evaluator.h"
@@ -81,7 +81,8 @@ Handle(Geom_BSplineSurface) occt_surface(const BsplineSurface& s, int spans) {
     multiplicities(i + 1) = i == 0 || i == spans ? s.degree_u + 1 : 1;
   }
   if (s.weights.empty())
-    return new Geom_BSplineSurface(poles, knots, knots, multiplicities, multiplicities, s.degree_u, s.degree_v);
+    return new Geom_BSplineSurface(poles, knots, knots, multiplicities, multiplicities, s.degree_u,
+                                   s.degree_v);
   return new Geom_BSplineSurface(poles, weights, knots, knots, multiplicities, multiplicities, s.degree_u,
                                  s.degree_v);
 }
@@ -100,8 +101,8 @@ SISLSurf* sisl_surface(const BsplineSurface& s) {
                  s.weights.empty() ? 1 : 2, 3, 1);
 }
 
-/// Grids of one knot span each, in turn; or as many points anywhere on the surface, in batches of one size. Results of
-/// a tile fit a core's cache, as whoever works on them would choose.
+/// Grids of one knot span each, in turn; or as many points anywhere on the surface, in batches of one size.
+/// Results of a tile fit a core's cache, as whoever works on them would choose.
 struct Points {
   bool grid = true;
   std::vector<std::vector<double>> u, v;
@@ -216,8 +217,7 @@ double nanoseconds(const Points& points, const Run& run) {
   return spent.count() / static_cast<double>(points.count);
 }
 
-constexpr Compute kDerivatives =
-    Compute::points | Compute::first_derivatives | Compute::second_derivatives;
+constexpr Compute kDerivatives = Compute::points | Compute::first_derivatives | Compute::second_derivatives;
 constexpr Compute kCurvatures =
     Compute::points | Compute::normals | Compute::curvatures | Compute::directions;
 
@@ -247,7 +247,9 @@ Json measure(const Options& options, bool rational, bool grid) {
               {"points", grid ? "grid" : "scattered"},
               {"count", points.count}};
   for (const auto& [name, values] : times) row[name + "_ns"] = median(values);
-  const auto ratio = [&](const char* a, const char* b) { return row[a].get<double>() / row[b].get<double>(); };
+  const auto ratio = [&](const char* a, const char* b) {
+    return row[a].get<double>() / row[b].get<double>();
+  };
   row["d2_beside_occt"] = ratio("occt_d2_ns", "dupin_d2_ns");
   row["d2_beside_sisl"] = ratio("sisl_d2_ns", "dupin_d2_ns");
   row["curvature_beside_occt"] = ratio("occt_curvature_ns", "dupin_curvature_ns");
@@ -278,8 +280,9 @@ int run_main(int argc, char** argv) {
   app.add_option("--runs", options.runs, "of which the median counts")->check(CLI::Range(1, 1000));
   app.add_option("-o", options.output, "JSON lines");
   CLI11_PARSE(app, argc, argv);
-  std::printf("degree %d, %d x %d spans, %d x %d points a span, %s, medians of %d\n", options.degree, options.spans,
-              options.spans, options.side, options.side, batch_instruction_set(), options.runs);
+  std::printf("degree %d, %d x %d spans, %d x %d points a span, %s, medians of %d\n", options.degree,
+              options.spans, options.spans, options.side, options.side, batch_instruction_set(),
+              options.runs);
   std::ofstream out;
   if (!options.output.empty()) out.open(options.output);
   for (const bool rational : {false, true})

@@ -1,4 +1,5 @@
-// Batches: against one point at a time, 100-digit arithmetic and closed forms; the same bits whatever runs them.
+// Batches: against one point at a time, 100-digit arithmetic and closed forms; the same bits whatever runs
+// them.
 #include "../../nurbs/batch_evaluator.h"
 
 #include <gtest/gtest.h>
@@ -134,7 +135,8 @@ TEST(BatchEvaluator, AgreesWithHundredDigits) {
     const int degree = 2 + static_cast<int>(seed % 4);
     const BsplineSurface s = testing::random_surface(
         random, {.degree_u = degree, .degree_v = 3, .extra_u = 1, .extra_v = 2, .rational = seed % 2 == 0});
-    const double u = testing::off_knots(random, s.knots_u, 0, 1), v = testing::off_knots(random, s.knots_v, 0, 1);
+    const double u = testing::off_knots(random, s.knots_u, 0, 1),
+                 v = testing::off_knots(random, s.knots_v, 0, 1);
     SurfaceSamples got;
     evaluator({s}).scattered({&u, 1}, {&v, 1}, {kEverything, {}, false}, got);
     const oracle::PrincipalCurvatures want = oracle::curvatures({s}, u, v);
@@ -144,14 +146,15 @@ TEST(BatchEvaluator, AgreesWithHundredDigits) {
     EXPECT_LE(distance(got.n[0], want.n), 1e-14);
     EXPECT_LE(length(cross(got.d1[0], want.d1)), tolerance / std::abs(want.k1 - want.k2) + 1e-15);
     const SurfaceJet jet = oracle::surface_jet({s}, u, v);
-    EXPECT_LE(distance(got.puuv[0], jet.puuv), 1e-13 * (length(jet.puuv) + std::pow(jet_scale({s}), 3) / 100));
+    EXPECT_LE(distance(got.puuv[0], jet.puuv),
+              1e-13 * (length(jet.puuv) + std::pow(jet_scale({s}), 3) / 100));
   }
 }
 
 std::vector<double> all_values(const SurfaceSamples& s) {
   std::vector<double> out;
-  for (const Vec3Array* a : {&s.p, &s.pu, &s.pv, &s.puu, &s.puv, &s.pvv, &s.puuu, &s.puuv, &s.puvv, &s.pvvv,
-                             &s.n, &s.d1, &s.d2})
+  for (const Vec3Array* a :
+       {&s.p, &s.pu, &s.pv, &s.puu, &s.puv, &s.pvv, &s.puuu, &s.puuv, &s.puvv, &s.pvvv, &s.n, &s.d1, &s.d2})
     for (const auto& part : {a->x, a->y, a->z}) out.insert(out.end(), part.begin(), part.end());
   for (const auto& part : {s.k1, s.k2, s.mean, s.gauss}) out.insert(out.end(), part.begin(), part.end());
   for (Kind kind : s.kind) out.push_back(static_cast<double>(kind));
@@ -167,7 +170,8 @@ std::vector<Sample> a_few_kinds() {
   std::vector<Sample> out;
   int index = 0;
   for (Sample& sample : every_kind())
-    if (sample.name.find("spline of") == std::string::npos || index++ % 3 == 0) out.push_back(std::move(sample));
+    if (sample.name.find("spline of") == std::string::npos || index++ % 3 == 0)
+      out.push_back(std::move(sample));
   return out;
 }
 
@@ -248,9 +252,10 @@ TEST(BatchEvaluator, TakesTheSideOfAKnotThatIsAskedFor) {
   SurfaceSamples turned;
   evaluator({Revolution{{}, {0, 0, 1}, {profile}}})
       .grid({&u, 1}, {&v, 1}, {kEverything, {.v_from_left = true}, false}, turned);
-  EXPECT_LE(distance(turned.pv[0],
-                     oracle::surface_jet({Revolution{{}, {0, 0, 1}, {profile}}}, u, v, oracle::Side::backward).pv),
-            1e-13);
+  EXPECT_LE(
+      distance(turned.pv[0],
+               oracle::surface_jet({Revolution{{}, {0, 0, 1}, {profile}}}, u, v, oracle::Side::backward).pv),
+      1e-13);
 }
 
 TEST(BatchEvaluator, SeesAPeriodicSeamFromBothSides) {
@@ -308,7 +313,8 @@ BsplineSurface ellipsoid(const Vec3& axes) {
   const double weight[] = {1, h, 1};
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
-      s.poles.push_back({axes.x * circle[j].x * circle[i].x, axes.y * circle[j].x * circle[i].y, axes.z * circle[j].y});
+      s.poles.push_back(
+          {axes.x * circle[j].x * circle[i].x, axes.y * circle[j].x * circle[i].y, axes.z * circle[j].y});
       s.weights.push_back(weight[i] * weight[j]);
     }
   return s;
@@ -358,7 +364,8 @@ TEST(BatchEvaluator, AtAnUmbilicTakesTheBestAxis) {
   Random random(19);
   for (int i = 0; i < 20; ++i) {
     const Frame3 f = random.frame();
-    for (const Surface& surface : {Surface{Sphere{f, 2.5}}, Surface{Plane{f}}, Surface{ellipsoid({2, 2, 2})}}) {
+    for (const Surface& surface :
+         {Surface{Sphere{f, 2.5}}, Surface{Plane{f}}, Surface{ellipsoid({2, 2, 2})}}) {
       const double u = random.between(0.1, 0.9), v = random.between(0.1, 0.9);
       SurfaceSamples s;
       evaluator(surface).grid({&u, 1}, {&v, 1}, {kEverything, {}, false}, s);
@@ -421,7 +428,8 @@ TEST(BatchEvaluator, RefusesBadSurfacesNamingTheValueAndItsIndex) {
       {"weight 5 is -1", [](BsplineSurface& s) { s.weights[5] = -1; }},
       {"weight 4 is nan", [](BsplineSurface& s) { s.weights[4] = std::numeric_limits<double>::quiet_NaN(); }},
       {"in u a spline's knots decrease: knot 4 is -1", [](BsplineSurface& s) { s.knots_u[4] = -1; }},
-      {"in v a spline's knots are not finite: knot 1 is", [](BsplineSurface& s) { s.knots_v[1] = std::nan(""); }},
+      {"in v a spline's knots are not finite: knot 1 is",
+       [](BsplineSurface& s) { s.knots_v[1] = std::nan(""); }},
       {"wrong number of knots (8, not 11)", [](BsplineSurface& s) { s.knots_u.resize(8), s.count_u = 7; }},
       {"degree 0 is out of range", [](BsplineSurface& s) { s.degree_v = 0; }},
       {"degree 26 is out of range", [](BsplineSurface& s) { s.degree_u = 26; }},
@@ -440,7 +448,8 @@ TEST(BatchEvaluator, RefusesBadSurfacesNamingTheValueAndItsIndex) {
     EXPECT_EQ(made.status().code, StatusCode::invalid_argument);
     EXPECT_NE(made.status().message.find(c.expected), std::string::npos) << made.status().message;
   }
-  EXPECT_EQ(BatchEvaluator::make({Sphere{{}, nan}}).status().message, "a surface's radius is not positive: nan");
+  EXPECT_EQ(BatchEvaluator::make({Sphere{{}, nan}}).status().message,
+            "a surface's radius is not positive: nan");
 }
 
 }  // namespace
