@@ -62,6 +62,9 @@ class Layer {
   /// first primitive of a placement is SceneInstance::first_primitive + ScenePart::first_in_layer[layer], and
   /// the number of a face ScenePart::face_numbers[face].
   virtual Status upload(Renderer::Impl& renderer, const Scene::Impl& scene, std::uint32_t layer) = 0;
+  /// The scene goes, in its current context, and `scene.gl` with it: drops what upload made for this scene.
+  /// Only a layer that somebody besides the scene can hold has anything to do: the others go now.
+  virtual void release(const Scene::Impl&) {}
 
   /// Chooses what this pass draws, on the CPU, and uploads what the choice needs: nothing of placements that
   /// are not visible.

@@ -87,6 +87,11 @@ class Layer;
 
 class Scene::Impl {
  public:
+  Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl();
+
   std::shared_ptr<const Gl> gl;  ///< outlives the buffers below
   std::vector<ScenePart> parts;
   std::vector<SceneInstance> instances;
@@ -102,7 +107,7 @@ class Scene::Impl {
   mutable TexelBuffer colors;           ///< R32UI: of every drawn face instance; for triangles and layers
   mutable bool colors_changed = false;  ///< since they were uploaded
   GlVertexArray mesh_array;
-  std::vector<std::shared_ptr<Layer>> layers;  ///< their own buffers go before `gl` does
+  std::vector<std::shared_ptr<Layer>> layers;  ///< lose their own buffers before `gl` goes
 
   Look& look(std::uint32_t instance, std::uint32_t face);
   /// After a change of the instance's look.

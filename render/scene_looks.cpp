@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "layer.h"
 #include "renderer_impl.h"
 
 namespace dupin {
@@ -75,6 +76,9 @@ std::vector<std::uint32_t> Scene::Impl::color_words() const {
 
 Scene::Scene(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Scene::~Scene() = default;
+Scene::Impl::~Impl() {
+  for (const auto& layer : layers) layer->release(*this);
+}
 const SceneInfo& Scene::info() const {
   return impl_->info;
 }

@@ -59,7 +59,16 @@ class TreeLayers::Impl : public Layer {
     grids_buffer_ = TexelBuffer(gl, GL_RGBA32F);
     upload_grids(scene);
     picture_ = {};
+    scene_ = &scene;
     return {};
+  }
+
+  void release(const Scene::Impl& scene) override {
+    if (scene_ != &scene) return;  // another scene has them since
+    lists_ = {};
+    points_buffer_ = {}, extras_buffer_ = {}, drawn_buffer_ = {}, runs_buffer_ = {}, grids_buffer_ = {};
+    picture_ = {};
+    scene_ = nullptr;
   }
 
   Status find(const LayerPass& pass) override {
@@ -241,6 +250,7 @@ class TreeLayers::Impl : public Layer {
   std::vector<PartTree> trees_;
   TreeLayerOptions options_;
   TreeLayerStats stats_;
+  const Scene::Impl* scene_ = nullptr;  ///< whose buffers these are
   TreeLists lists_;
   SplatRaster raster_;
   TexelBuffer points_buffer_, extras_buffer_, drawn_buffer_, runs_buffer_, grids_buffer_;

@@ -33,11 +33,13 @@ std::uint32_t curvature_of(const PointTree& tree, std::uint32_t node, const Enco
 
 }  // namespace
 
-TreeLists::TreeLists(const Gl& gl, const std::vector<PartTree>& trees, const Scene::Impl& scene, std::uint32_t layer)
+TreeLists::TreeLists(const Gl& gl, const std::vector<PartTree>& trees, const Scene::Impl& scene,
+                     std::uint32_t layer)
     : trees_(trees), layer_(layer), arena_(gl, only_trees(trees)) {
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
     const std::size_t part = scene.instances[i].part;
-    if (part < trees_.size() && trees_[part].tree) placed_.push_back({part, i, PointCut(trees_[part].tree), {}});
+    if (part < trees_.size() && trees_[part].tree)
+      placed_.push_back({part, i, PointCut(trees_[part].tree), {}});
   }
   looks_.resize(placed_.size());
 }
@@ -161,7 +163,8 @@ void TreeLists::fill(const Scene::Impl& scene, const PlacedTree& p, const Pieces
 
 bool TreeLists::gather(const Scene::Impl& scene) {
   bool changed = looks_changed(scene) || !gathered_;
-  for (const PlacedTree& p : placed_) changed = changed || (scene.instances[p.instance].visible && p.cut.changed());
+  for (const PlacedTree& p : placed_)
+    changed = changed || (scene.instances[p.instance].visible && p.cut.changed());
   if (!changed) return false;
   gathered_ = true;
   std::vector<Pieces> pieces(placed_.size());
@@ -183,8 +186,10 @@ void TreeLists::make_runs(const Scene::Impl& scene) {
   point_runs_.clear(), triangle_runs_.clear();
   for (const PlacedTree& p : placed_) {
     const SceneInstance& instance = scene.instances[p.instance];
-    const std::uint32_t primitive = instance.first_primitive + scene.parts[instance.part].first_in_layer[layer_];
-    if (p.points > 0) point_runs_.push_back({static_cast<std::uint32_t>(p.first_point), p.instance, 0, primitive});
+    const std::uint32_t primitive =
+        instance.first_primitive + scene.parts[instance.part].first_in_layer[layer_];
+    if (p.points > 0)
+      point_runs_.push_back({static_cast<std::uint32_t>(p.first_point), p.instance, 0, primitive});
     if (p.triangles > 0)
       triangle_runs_.push_back({static_cast<std::uint32_t>(p.first_triangle), p.instance, 0, primitive});
   }

@@ -1,4 +1,5 @@
-// What a frame draws of placed point trees, one thing behind the other: points and triangles, each with its number's place.
+// What a frame draws of placed point trees, one thing behind the other: points and triangles, each with its
+// number's place.
 #ifndef DUPIN_RENDER_TREE_LISTS_H
 #define DUPIN_RENDER_TREE_LISTS_H
 
@@ -26,7 +27,8 @@ struct PlacedTree {
 struct TreeRun {
   std::uint32_t first, instance, unused, first_primitive;
 };
-/// The face is its number among the part's drawn ones; with kOverride its color is the host's, not the tree's.
+/// The face is its number among the part's drawn ones; with kOverride its color is the host's, not the
+/// tree's.
 struct PointExtra {
   std::uint32_t curvature, node, face, unused;
 };

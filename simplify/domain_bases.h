@@ -1,12 +1,13 @@
-// A surface as a few quasi-flat domains that overlap and blend: the decomposition of Reniers & Telea, "Extreme
-// simplification and rendering of point sets using algebraic multigrid", Comput. Visual Sci., 2006, §2.
+// A surface as a few quasi-flat domains that overlap and blend: the decomposition of Reniers & Telea,
+// "Extreme simplification and rendering of point sets using algebraic multigrid", Comput. Visual Sci., 2006,
+// §2.
 //
 //   auto bases = decompose(points, {});
 //   auto psi = bases->level(5);          // five levels finer than the coarsest
 //
-// A level is a partition of unity: each point belongs to one or a few domains, to each by Ψ in (0, 1], and its
-// Ψ sum to 1. Bases end at creases and fade into each other where the surface is flat. From level to level
-// there are two to three times as many domains; the finest level has one a point.
+// A level is a partition of unity: each point belongs to one or a few domains, to each by Ψ in (0, 1], and
+// its Ψ sum to 1. Bases end at creases and fade into each other where the surface is flat. From level to
+// level there are two to three times as many domains; the finest level has one a point.
 #ifndef DUPIN_SIMPLIFY_DOMAIN_BASES_H
 #define DUPIN_SIMPLIFY_DOMAIN_BASES_H
 
@@ -21,7 +22,8 @@ namespace dupin {
 
 struct DecomposeOptions {
   std::size_t neighbors = 50;  ///< k_min: the classifier looks at least at so many around each point, 3 …
-  double radius = 0;           ///< ε, in the part's units: and at all that are as near; features smaller than it vanish
+  double radius =
+      0;  ///< ε, in the part's units: and at all that are as near; features smaller than it vanish
   Progress progress;
 };
 
@@ -69,8 +71,8 @@ class DomainBases {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The same for any number of threads. Points that coincide are one. invalid_argument: options out of range or
-/// check(points) fails. unreadable: Dupin was built without hypre.
+/// The same for any number of threads. Points that coincide are one. invalid_argument: options out of range
+/// or check(points) fails. unreadable: Dupin was built without hypre.
 Result<DomainBases> decompose(const SurfacePoints& points, const DecomposeOptions& options);
 
 /// D = {x | Ψ(x) > τ} (eq. 8): the points of each domain, ascending, with their Ψ. A point whose Ψ are all

@@ -13,11 +13,11 @@ namespace dupin {
 
 /// Every list but `positions` may be empty. Points may coincide, lie on a line, or be alone.
 struct SurfacePoints {
-  std::vector<Vec3> positions;            ///< in the part's space
-  std::vector<Vec3> normals;              ///< unit, outward; zero where unknown
-  std::vector<std::uint32_t> colors;      ///< sRGB, 8 bits each, r lowest; 0: the face's or the part's
-  std::vector<std::uint32_t> faces;       ///< index of each point's face in the part; empty: all of face 0
-  std::vector<std::uint32_t> triangles;   ///< three indices each; points without triangles are a point set
+  std::vector<Vec3> positions;           ///< in the part's space
+  std::vector<Vec3> normals;             ///< unit, outward; zero where unknown
+  std::vector<std::uint32_t> colors;     ///< sRGB, 8 bits each, r lowest; 0: the face's or the part's
+  std::vector<std::uint32_t> faces;      ///< index of each point's face in the part; empty: all of face 0
+  std::vector<std::uint32_t> triangles;  ///< three indices each; points without triangles are a point set
   bool is_mesh() const { return !triangles.empty(); }
   std::size_t size() const { return positions.size(); }
 };
@@ -28,7 +28,9 @@ Status check(const SurfacePoints& points);
 /// Whether two outward normals can belong to one sheet of a surface: not those of a thin plate's two sides.
 /// Unknown (zero) normals can.
 inline constexpr double kSameSheetCosine = -0.5;
-inline bool same_sheet(const Vec3& a, const Vec3& b) { return dot(a, b) > kSameSheetCosine; }
+inline bool same_sheet(const Vec3& a, const Vec3& b) {
+  return dot(a, b) > kSameSheetCosine;
+}
 
 }  // namespace dupin
 

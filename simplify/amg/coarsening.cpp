@@ -32,7 +32,8 @@ void settle(std::vector<Share>& shares) {
       return a.value != b.value ? a.value > b.value : a.column < b.column;
     });
     shares.resize(kMostHeirs);
-    std::sort(shares.begin(), shares.end(), [](const Share& a, const Share& b) { return a.column < b.column; });
+    std::sort(shares.begin(), shares.end(),
+              [](const Share& a, const Share& b) { return a.column < b.column; });
   }
   double sum = 0;
   for (const Share& s : shares) sum += s.value;

@@ -10,7 +10,8 @@
 //    them. A domain that is much less flat than those beside it, and holds to them more than to its like (a
 //    crease, a tip), is given to them.
 // 2. *Multigrid* on the rest, with the couplings of what holds together.
-// 3. What is coupled to nothing stays a domain of its own. When nothing else is left, the contrast is lowered.
+// 3. What is coupled to nothing stays a domain of its own. When nothing else is left, the contrast is
+// lowered.
 #ifndef DUPIN_SIMPLIFY_AMG_COARSENING_H
 #define DUPIN_SIMPLIFY_AMG_COARSENING_H
 

@@ -66,8 +66,8 @@ std::vector<T> of_originals(const std::vector<T>& values, const std::vector<std:
   return result;
 }
 
-Status coarsen(Sparse<amg::Coupling> couplings, const std::vector<double>& classifiers, const Progress& progress,
-               std::vector<Sparse<double>>& prolongations) {
+Status coarsen(Sparse<amg::Coupling> couplings, const std::vector<double>& classifiers,
+               const Progress& progress, std::vector<Sparse<double>>& prolongations) {
   auto multigrid = amg::Multigrid::start();
   if (!multigrid) return multigrid.status();
   const double all = couplings.columns;
@@ -110,14 +110,17 @@ const DomainBases::Times& DomainBases::times() const {
 
 DomainBasis DomainBases::level(std::size_t level) const {
   Sparse<double> basis = own_basis(impl_->unique);
-  for (std::size_t k = 0; k + level + 1 < levels(); ++k) basis = coarser_basis(basis, impl_->prolongations[k]);
+  for (std::size_t k = 0; k + level + 1 < levels(); ++k)
+    basis = coarser_basis(basis, impl_->prolongations[k]);
   DomainBasis result;
   result.domains = basis.columns;
   result.starts.reserve(impl_->unique_of.size() + 1);
   for (const std::uint32_t u : impl_->unique_of) {
-    result.domain.insert(result.domain.end(), basis.column.begin() + static_cast<std::ptrdiff_t>(basis.starts[u]),
+    result.domain.insert(result.domain.end(),
+                         basis.column.begin() + static_cast<std::ptrdiff_t>(basis.starts[u]),
                          basis.column.begin() + static_cast<std::ptrdiff_t>(basis.starts[u + 1]));
-    result.value.insert(result.value.end(), basis.value.begin() + static_cast<std::ptrdiff_t>(basis.starts[u]),
+    result.value.insert(result.value.end(),
+                        basis.value.begin() + static_cast<std::ptrdiff_t>(basis.starts[u]),
                         basis.value.begin() + static_cast<std::ptrdiff_t>(basis.starts[u + 1]));
     result.starts.push_back(result.domain.size());
   }
@@ -127,7 +130,8 @@ DomainBasis DomainBases::level(std::size_t level) const {
 Result<DomainBases> decompose(const SurfacePoints& points, const DecomposeOptions& options) {
   if (Status good = check(points); !good.ok()) return good;
   if (options.neighbors < 3 || !(options.radius >= 0))
-    return {StatusCode::invalid_argument, "a classifier needs at least 3 neighbors and a radius that is not negative"};
+    return {StatusCode::invalid_argument,
+            "a classifier needs at least 3 neighbors and a radius that is not negative"};
   Clock::time_point start = Clock::now();
   auto impl = std::make_unique<DomainBases::Impl>();
   amg::UniquePoints unique = amg::unique_points(points);
@@ -139,7 +143,8 @@ Result<DomainBases> decompose(const SurfacePoints& points, const DecomposeOption
   impl->times.matrix = lap(start);
   impl->unique = static_cast<std::uint32_t>(unique.positions.size());
   if (impl->unique > 1)
-    if (Status done = coarsen(std::move(couplings), around->classifiers, options.progress, impl->prolongations);
+    if (Status done =
+            coarsen(std::move(couplings), around->classifiers, options.progress, impl->prolongations);
         !done.ok())
       return done;
   impl->times.multigrid = lap(start);
@@ -167,8 +172,8 @@ std::vector<Domain> domains_of(const DomainBasis& basis, double threshold) {
   return domains;
 }
 
-std::vector<std::vector<std::uint32_t>> domain_neighbors(const std::vector<Domain>& domains, std::size_t points,
-                                                         double overlap) {
+std::vector<std::vector<std::uint32_t>> domain_neighbors(const std::vector<Domain>& domains,
+                                                         std::size_t points, double overlap) {
   std::vector<std::vector<std::uint32_t>> of_point(points);
   for (std::uint32_t d = 0; d < domains.size(); ++d)
     for (const std::uint32_t p : domains[d].points) of_point[p].push_back(d);

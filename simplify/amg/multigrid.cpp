@@ -39,12 +39,14 @@ Result<std::string> find_program() {
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
   for (const std::filesystem::path& place :
-       {self / "dupin-multigrid", self / "../libexec/dupin/dupin-multigrid", self / "../simplify/dupin-multigrid",
-        self / "../../simplify/dupin-multigrid", std::filesystem::path(DUPIN_INSTALLED_MULTIGRID)})
+       {self / "dupin-multigrid", self / "../libexec/dupin/dupin-multigrid",
+        self / "../simplify/dupin-multigrid", self / "../../simplify/dupin-multigrid",
+        std::filesystem::path(DUPIN_INSTALLED_MULTIGRID)})
     if (is_program(place)) return place.lexically_normal().string();
-  return {StatusCode::unreadable,
-          "decomposing surfaces into domains needs dupin-multigrid, which was not found: Dupin was built without "
-          "hypre (libhypre-dev), or set DUPIN_MULTIGRID"};
+  return {
+      StatusCode::unreadable,
+      "decomposing surfaces into domains needs dupin-multigrid, which was not found: Dupin was built without "
+      "hypre (libhypre-dev), or set DUPIN_MULTIGRID"};
 }
 
 Status failure(const char* why) {

@@ -36,15 +36,15 @@ class Chunk {
 
  private:
   void find_neighbors(const NeighborTree& tree, std::uint32_t i) {
-    squared_radius_ = tree.nearest(points_.positions[i], options_.neighbors + 1, options_.radius,
-                                   guess_, found_);
+    squared_radius_ =
+        tree.nearest(points_.positions[i], options_.neighbors + 1, options_.radius, guess_, found_);
     std::erase_if(found_, [&](const Neighbor& n) {
       return n.index == i ||
              (!points_.normals.empty() && !same_sheet(points_.normals[i], points_.normals[n.index]));
     });
     // The nearest first, as far as anything depends on it.
-    std::partial_sort(found_.begin(), found_.begin() + std::min(kSecondStarPoints, found_.size()), found_.end(),
-                      nearer);
+    std::partial_sort(found_.begin(), found_.begin() + std::min(kSecondStarPoints, found_.size()),
+                      found_.end(), nearer);
     around_.clear();
     for (const Neighbor& n : found_) around_.push_back(points_.positions[n.index]);
   }
@@ -62,7 +62,8 @@ class Chunk {
   void add_fan(std::uint32_t i) {
     make_star(i);
     for (const StarPoint& p : star_.points) fans.points.push_back(p.index);
-    // A star that leaves half the plane open begins after the gap, so that the last and the first are its ends.
+    // A star that leaves half the plane open begins after the gap, so that the last and the first are its
+    // ends.
     fans.closed.push_back(star_.closed);
     fans.first.push_back(fans.points.size());
   }
@@ -75,7 +76,8 @@ class Chunk {
     for (const std::size_t count : {kFirstStarPoints, kSecondStarPoints, found_.size()}) {
       if (count > found_.size()) continue;
       const bool all = count >= found_.size();
-      const double reach = all ? squared_radius_ : found_[count - 1].squared_distance, scale = kStarRange / std::sqrt(reach);
+      const double reach = all ? squared_radius_ : found_[count - 1].squared_distance,
+                   scale = kStarRange / std::sqrt(reach);
       project(i, count, scale);
       delaunay_star(flat_, star_);
       if (all || squared_reach(star_) < kStarRange * kStarRange) break;
@@ -154,7 +156,7 @@ double classifier(const Moments& m, double radius) {
 }
 
 Result<Neighborhoods> neighborhoods(const UniquePoints& points, const NeighborhoodOptions& options,
-                                      const Progress& progress) {
+                                    const Progress& progress) {
   const std::size_t count = points.positions.size();
   Neighborhoods result;
   result.classifiers.resize(count);

@@ -11,7 +11,7 @@ namespace dupin::amg {
 
 struct NeighborhoodOptions {
   std::size_t neighbors = 50;  ///< k_min: at least so many, the point not counted
-  double radius = 0;            ///< ε: and all within it
+  double radius = 0;           ///< ε: and all within it
 };
 
 /// The zero and first moment of points about one of them, with eigenvalues λ0 >= λ1 >= λ2 (eqs. 1, 2).
@@ -36,7 +36,8 @@ struct Fans {
 
 struct Neighborhoods {
   std::vector<double> classifiers;
-  std::vector<Vec3> normals;      ///< e2 of the first moment, or the given normal; either side where none was given
+  std::vector<Vec3>
+      normals;  ///< e2 of the first moment, or the given normal; either side where none was given
   /// How far the surface may be taken to reach from the point without another: the distance of its
   /// kSpacingNeighbor-th neighbor.
   std::vector<double> spacings;
@@ -49,7 +50,7 @@ inline constexpr std::size_t kSpacingNeighbor = 4;
 inline constexpr double kLargestGap = 4;
 
 Result<Neighborhoods> neighborhoods(const UniquePoints& points, const NeighborhoodOptions& options,
-                                      const Progress& progress);
+                                    const Progress& progress);
 
 }  // namespace dupin::amg
 

@@ -19,8 +19,8 @@ struct Cloud {
   }
 };
 
-using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3,
-                                                  std::uint32_t>;
+using Index =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, std::uint32_t>;
 constexpr std::size_t kLeafSize = 16;
 constexpr double kGuessMargin = 1.2;  // of squared radii
 constexpr double kGuessGrowth = 2;
@@ -77,9 +77,8 @@ double NeighborTree::nearest(const Vec3& point, std::size_t count, double radius
   std::nth_element(found.begin(), last, found.end(), nearer);
   guess = last->squared_distance;
   double farthest = guess;
-  const auto end = std::partition(last + 1, found.end(), [&](const Neighbor& n) {
-    return n.squared_distance < radius * radius;
-  });
+  const auto end = std::partition(last + 1, found.end(),
+                                  [&](const Neighbor& n) { return n.squared_distance < radius * radius; });
   for (auto n = last + 1; n != end; ++n) farthest = std::max(farthest, n->squared_distance);
   found.erase(end, found.end());
   return farthest;

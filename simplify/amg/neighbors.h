@@ -28,7 +28,8 @@ class NeighborTree {
 
   /// The `count` nearest of `point`, itself included if it is one of the tree's, and all others within
   /// `radius`, in no order. `guess`, the squared radius that held as many around the last point asked for (0:
-  /// unknown), only makes it faster: near points have near answers. Returns the square of the largest distance.
+  /// unknown), only makes it faster: near points have near answers. Returns the square of the largest
+  /// distance.
   double nearest(const Vec3& point, std::size_t count, double radius, double& guess,
                  std::vector<Neighbor>& found) const;
 

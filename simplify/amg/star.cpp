@@ -10,8 +10,12 @@
 namespace dupin::amg {
 namespace {
 
-std::int64_t squared(const StarPoint& p) { return p.x * p.x + p.y * p.y; }
-std::int64_t turn(const StarPoint& a, const StarPoint& b) { return a.x * b.y - a.y * b.x; }
+std::int64_t squared(const StarPoint& p) {
+  return p.x * p.x + p.y * p.y;
+}
+std::int64_t turn(const StarPoint& a, const StarPoint& b) {
+  return a.x * b.y - a.y * b.x;
+}
 
 /// Whether b is of the star between a and c: inside their circle through the centre.
 bool stays(const StarPoint& a, const StarPoint& b, const StarPoint& c) {
@@ -19,7 +23,9 @@ bool stays(const StarPoint& a, const StarPoint& b, const StarPoint& c) {
   return turn(a, b) * squared(c) + turn(b, c) * squared(a) - turn(a, c) * squared(b) > 0;
 }
 
-bool lower_half(const StarPoint& p) { return p.y < 0 || (p.y == 0 && p.x < 0); }
+bool lower_half(const StarPoint& p) {
+  return p.y < 0 || (p.y == 0 && p.x < 0);
+}
 
 bool before(const StarPoint& a, const StarPoint& b) {
   const bool la = lower_half(a), lb = lower_half(b);
@@ -47,13 +53,12 @@ void delaunay_star(std::vector<StarPoint>& points, Star& star) {
   sort_around(points);
   if (points.empty()) return;
   // The nearest is always of the star, so the scan can start and end there.
-  const auto nearest = std::min_element(points.begin(), points.end(), [](const StarPoint& a, const StarPoint& b) {
-    return squared(a) < squared(b);
-  });
+  const auto nearest =
+      std::min_element(points.begin(), points.end(),
+                       [](const StarPoint& a, const StarPoint& b) { return squared(a) < squared(b); });
   std::rotate(points.begin(), nearest, points.end());
   const auto settle = [&](const StarPoint& next) {
-    while (star.points.size() > 1 &&
-           !stays(star.points[star.points.size() - 2], star.points.back(), next))
+    while (star.points.size() > 1 && !stays(star.points[star.points.size() - 2], star.points.back(), next))
       star.points.pop_back();
   };
   for (const StarPoint& p : points) {
@@ -63,7 +68,8 @@ void delaunay_star(std::vector<StarPoint>& points, Star& star) {
   settle(points.front());
   star.closed = star.points.size() > 2;
   for (std::size_t i = 0; i < star.points.size(); ++i)
-    star.closed = star.closed && less_than_half_turn(star.points[i], star.points[(i + 1) % star.points.size()]);
+    star.closed =
+        star.closed && less_than_half_turn(star.points[i], star.points[(i + 1) % star.points.size()]);
 }
 
 double squared_reach(const Star& star) {

@@ -29,7 +29,9 @@ struct Star {
 void delaunay_star(std::vector<StarPoint>& points, Star& star);
 
 /// Whether going from a to b, counter-clockwise about the centre, is less than half a turn.
-inline bool less_than_half_turn(const StarPoint& a, const StarPoint& b) { return a.x * b.y - a.y * b.x > 0; }
+inline bool less_than_half_turn(const StarPoint& a, const StarPoint& b) {
+  return a.x * b.y - a.y * b.x > 0;
+}
 
 /// The square of the largest diameter of circles around the star's triangles: points that are farther than
 /// that cannot change a closed star. Rounded; infinite for one that is not closed.

@@ -121,7 +121,8 @@ Sparse<Coupling> Assembly::symmetric() const {
   Sparse<Coupling> matrix;
   matrix.columns = static_cast<std::uint32_t>(n);
   for (std::size_t i = 0; i < n; ++i) {
-    for (std::uint64_t k = place[i]; k < place[i] + counts[i]; ++k) matrix.add(entries[k].column, entries[k].coupling);
+    for (std::uint64_t k = place[i]; k < place[i] + counts[i]; ++k)
+      matrix.add(entries[k].column, entries[k].coupling);
     matrix.end_row();
   }
   return matrix;

@@ -1,4 +1,5 @@
-// The classifier as a diffusion coefficient: the matrix of −div(C grad) on the points (Reniers & Telea, §2.2).
+// The classifier as a diffusion coefficient: the matrix of −div(C grad) on the points (Reniers & Telea,
+// §2.2).
 #ifndef DUPIN_SIMPLIFY_AMG_STIFFNESS_H
 #define DUPIN_SIMPLIFY_AMG_STIFFNESS_H
 
@@ -17,12 +18,16 @@ struct Coupling {
     return *this;
   }
 };
-inline Coupling operator*(const Coupling& c, double s) { return {c.weight * s, c.flat * s}; }
-inline Coupling operator*(double s, const Coupling& c) { return c * s; }
+inline Coupling operator*(const Coupling& c, double s) {
+  return {c.weight * s, c.flat * s};
+}
+inline Coupling operator*(double s, const Coupling& c) {
+  return c * s;
+}
 
-/// −A_ij for i ≠ j: on a mesh from the finite elements of its triangles (eq. 4); on loose points from those of
-/// their fans in space (eq. 5), made symmetric (eq. 6). Points with nothing to be coupled to have empty rows.
-/// Rows are ordered by column.
+/// −A_ij for i ≠ j: on a mesh from the finite elements of its triangles (eq. 4); on loose points from those
+/// of their fans in space (eq. 5), made symmetric (eq. 6). Points with nothing to be coupled to have empty
+/// rows. Rows are ordered by column.
 Sparse<Coupling> couplings(const UniquePoints& points, const Neighborhoods& around);
 
 /// A itself: the diagonal, first in each row, makes every row sum to 0 (eq. 7).

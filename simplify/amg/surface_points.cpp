@@ -14,8 +14,11 @@ Status check(const SurfacePoints& points) {
   if (points.triangles.size() % 3 != 0) return bad("triangles that have not three corners");
   if (std::any_of(points.triangles.begin(), points.triangles.end(), [n](std::uint32_t i) { return i >= n; }))
     return bad("a triangle with a corner that there is not");
-  const auto finite = [](const std::vector<Vec3>& list) { return std::all_of(list.begin(), list.end(), is_finite); };
-  if (!finite(points.positions) || !finite(points.normals)) return bad("a point with a coordinate that is no number");
+  const auto finite = [](const std::vector<Vec3>& list) {
+    return std::all_of(list.begin(), list.end(), is_finite);
+  };
+  if (!finite(points.positions) || !finite(points.normals))
+    return bad("a point with a coordinate that is no number");
   return {};
 }
 

@@ -59,7 +59,6 @@ class Merger {
   Merger(const SurfacePoints& points, UniquePoints& unique, const Vec3& middle)
       : points_(points), unique_(unique), middle_(middle) {}
 
-
   /// The points of one cell.
   void add(const Cell* begin, const Cell* end) {
     const std::size_t first = unique_.positions.size();
@@ -79,7 +78,8 @@ class Merger {
  private:
   Vec3 place(const Vec3& p) const { return unique_.extent > 0 ? (p - middle_) / unique_.extent : Vec3{}; }
   bool mergeable(std::size_t at, const Vec3& normal) const {
-    return points_.is_mesh() || points_.normals.empty() || same_sheet(unit_or_zero(unique_.normals[at]), normal);
+    return points_.is_mesh() || points_.normals.empty() ||
+           same_sheet(unit_or_zero(unique_.normals[at]), normal);
   }
   const SurfacePoints& points_;
   UniquePoints& unique_;
@@ -89,7 +89,8 @@ class Merger {
 void keep_triangles(const SurfacePoints& points, UniquePoints& unique) {
   std::vector<bool> used(unique.positions.size());
   for (std::size_t t = 0; t < points.triangles.size(); t += 3) {
-    const std::uint32_t a = unique.unique_of[points.triangles[t]], b = unique.unique_of[points.triangles[t + 1]],
+    const std::uint32_t a = unique.unique_of[points.triangles[t]],
+                        b = unique.unique_of[points.triangles[t + 1]],
                         c = unique.unique_of[points.triangles[t + 2]];
     if (a == b || b == c || c == a) continue;
     unique.triangles.insert(unique.triangles.end(), {a, b, c});

@@ -10,12 +10,12 @@ namespace dupin::amg {
 inline constexpr double kMergeFraction = 1.0 / (1U << 30);
 
 struct UniquePoints {
-  std::vector<Vec3> positions;            ///< relative to the middle of their box, in `extent`s
-  std::vector<Vec3> normals;              ///< unit or zero; as many as positions, or none
-  std::vector<std::uint32_t> unique_of;   ///< for each of the original points
-  std::vector<std::uint32_t> triangles;   ///< without those that merging made degenerate
-  std::vector<std::uint32_t> loose;       ///< points that no triangle uses, ascending; all of a point set
-  double extent = 0;                      ///< largest side of their box; 0 where points cannot be told apart
+  std::vector<Vec3> positions;           ///< relative to the middle of their box, in `extent`s
+  std::vector<Vec3> normals;             ///< unit or zero; as many as positions, or none
+  std::vector<std::uint32_t> unique_of;  ///< for each of the original points
+  std::vector<std::uint32_t> triangles;  ///< without those that merging made degenerate
+  std::vector<std::uint32_t> loose;      ///< points that no triangle uses, ascending; all of a point set
+  double extent = 0;                     ///< largest side of their box; 0 where points cannot be told apart
 };
 
 /// Points of a mesh are merged wherever they coincide; those of a point set only with others of their sheet.

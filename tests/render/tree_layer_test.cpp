@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "../../core/parallel.h"
+#include "../../render/gl.h"
 #include "../../render/view.h"
 #include "../simplify/meshes.h"
 #include "device.h"
@@ -348,6 +349,56 @@ TEST(TreeLayer, SeveralSamplesAndAHostsOptionsWork) {
   for (std::size_t i = 3; i < frame.color.size(); i += 4)
     partly += frame.color[i] > 0.1F && frame.color[i] < 0.9F;
   EXPECT_GT(partly, 100u) << "the silhouette is smooth";
+}
+
+/// Counts the buffers and textures that are alive.
+int names_alive = 0;
+using GlNames = void (*)(GLsizei, GLuint*);
+GlNames gen_buffers, delete_buffers, gen_textures, delete_textures;
+template <GlNames& call, int sign>
+void counted(GLsizei count, GLuint* names) {
+  names_alive += sign * static_cast<int>(count);
+  call(count, names);
+}
+void* counting_loader(const Context& context, const std::string& name) {
+  void* const found = context.loader()(name.c_str());
+  const auto count = [&](GlNames& call, GlNames by) {
+    call = reinterpret_cast<GlNames>(found);
+    return reinterpret_cast<void*>(by);
+  };
+  if (name == "glGenBuffers") return count(gen_buffers, counted<gen_buffers, 1>);
+  if (name == "glDeleteBuffers") return count(delete_buffers, counted<delete_buffers, -1>);
+  if (name == "glGenTextures") return count(gen_textures, counted<gen_textures, 1>);
+  if (name == "glDeleteTextures") return count(delete_textures, counted<delete_textures, -1>);
+  return found;
+}
+
+TEST(TreeLayer, WhatAProgramKeepsOfALayerMayOutliveItsSceneAndItsContext) {
+  auto context = create_context(Device::automatic);
+  ASSERT_TRUE(context.ok());
+  auto renderer = Renderer::create([&](const char* name) { return counting_loader(**context, name); });
+  ASSERT_TRUE(renderer.ok()) << renderer.status().message;
+  const Model model = model_of(bumpy(20));
+  TreeLayers layers({{*build_point_tree(model.parts[0].polygons, {}), 0}}, {});
+  const int before = names_alive;
+  const auto draw = [&] {
+    auto scene = (*renderer)->upload(model, SceneContent{nullptr, {layers.layer()}});
+    EXPECT_TRUE(scene.ok()) << scene.status().message;
+    EXPECT_TRUE((*renderer)->draw(**scene, looking(4), everything()).ok());
+    return std::move(*scene);
+  };
+  auto first = draw();
+  const int of_renderer_and_scene = names_alive;
+  EXPECT_GT(of_renderer_and_scene, before);
+  auto second = draw();
+  first.reset();  // the layer is the second scene's now
+  EXPECT_TRUE((*renderer)->draw(*second, looking(3), everything()).ok());
+  EXPECT_EQ(names_alive, of_renderer_and_scene);
+  second.reset();
+  renderer->reset();
+  EXPECT_EQ(names_alive, 0) << "all went with the scene and the renderer";
+  context->reset();
+  EXPECT_GT(layers.stats().points + layers.stats().triangles, 0u);
 }
 
 }  // namespace

@@ -81,7 +81,8 @@ std::optional<DomainBasis> level_of(const DomainBases& bases, std::uint32_t doma
   return std::nullopt;
 }
 
-void expect_one_domain_a_side(const SurfacePoints& points, std::uint32_t sides, const DecomposeOptions& options = {}) {
+void expect_one_domain_a_side(const SurfacePoints& points, std::uint32_t sides,
+                              const DecomposeOptions& options = {}) {
   const DomainBases bases = decomposed(points, options);
   const auto basis = level_of(bases, sides);
   ASSERT_TRUE(basis) << "no level has a domain for each side";

@@ -1,5 +1,5 @@
-// Delaunay stars against the definition: a triangle belongs to the triangulation if the circle around it holds
-// no other point.
+// Delaunay stars against the definition: a triangle belongs to the triangulation if the circle around it
+// holds no other point.
 #include "../../simplify/amg/star.h"
 
 #include <gtest/gtest.h>

@@ -73,9 +73,7 @@ SurfacePoints sphere_mesh(int rings) {
   SurfacePoints points;
   const int around = 2 * rings;
   const auto vertex = [&](int i, int j) {
-    return i == 0      ? 0U
-           : i == rings ? 1U
-                        : static_cast<std::uint32_t>(2 + (i - 1) * around + j % around);
+    return i == 0 ? 0U : i == rings ? 1U : static_cast<std::uint32_t>(2 + (i - 1) * around + j % around);
   };
   points.positions = {{0, 0, 1}, {0, 0, -1}};
   for (int i = 1; i < rings; ++i)
@@ -87,7 +85,8 @@ SurfacePoints sphere_mesh(int rings) {
   points.normals = points.positions;
   for (int i = 0; i < rings; ++i)
     for (int j = 0; j < around; ++j) {
-      const std::uint32_t a = vertex(i, j), b = vertex(i + 1, j), c = vertex(i + 1, j + 1), d = vertex(i, j + 1);
+      const std::uint32_t a = vertex(i, j), b = vertex(i + 1, j), c = vertex(i + 1, j + 1),
+                          d = vertex(i, j + 1);
       if (a != d) points.triangles.insert(points.triangles.end(), {a, b, d});
       if (b != c) points.triangles.insert(points.triangles.end(), {d, b, c});
     }
