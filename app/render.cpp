@@ -101,6 +101,9 @@ DrawOptions RenderJob::draw_options() const {
   draw.samples = options_.sample_count();
   draw.exact_model = &model_;
   for (const Vec3& position : options_.light_positions()) draw.lights.push_back({position});
+  const std::vector<double>& s = options_.sections;
+  for (std::size_t i = 0; i + 3 < s.size(); i += 4)
+    draw.sections.push_back({{s[i], s[i + 1], s[i + 2]}, s[i + 3]});
   return draw;
 }
 

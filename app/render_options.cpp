@@ -141,6 +141,12 @@ void add_look_options(CLI::App& command, RenderOptions& options) {
       ->delimiter(',')
       ->type_name("X,Y,Z")
       ->group(group);
+  command
+      .add_option("--section", options.sections,
+                  "Cut the model open: only X·x + Y·y + Z·z + D >= 0 is drawn; up to 6 times")
+      ->delimiter(',')
+      ->type_name("X,Y,Z,D")
+      ->group(group);
   command.add_option("--shading", options.shading, "What the colour shows")
       ->check(CLI::IsMember({"lit", "normal", "k1", "k2", "mean", "gaussian", "zebra", "face", "primitive"}))
       ->capture_default_str()
@@ -175,6 +181,8 @@ Status RenderOptions::check() const {
   if (!exr() && !aovs.empty()) return bad("--aov goes with an EXR; a PNG shows --shading");
   if (lights.size() % 3 != 0 || lights.size() / 3 > kMostLights)
     return bad("--light takes X,Y,Z, up to " + std::to_string(kMostLights) + " times");
+  if (sections.size() % 4 != 0 || sections.size() / 4 > kMostSections)
+    return bad("--section takes X,Y,Z,D, up to " + std::to_string(kMostSections) + " times");
   return check_points();
 }
 

@@ -28,7 +28,8 @@ struct RenderOptions {
   std::vector<std::string> aovs;  ///< empty: color, normal, depth
   std::string shading = "lit", device = "auto";
   int repeat = 1;
-  std::vector<double> lights;  ///< x, y, z of each
+  std::vector<double> lights;    ///< x, y, z of each
+  std::vector<double> sections;  ///< normal and offset of each
   PointOptions points;
   std::string point_shading = "published";
   TreeLayerOptions trees;

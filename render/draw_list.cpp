@@ -181,8 +181,9 @@ void add_dps(const SceneInstance& instance, std::uint32_t index, const ScenePart
   const double depth_scale = length(camera.depth.n);
   for (std::size_t i = 0; i < part.dps.size(); ++i) {
     const DpBounds& dp = part.dps[i];
-    const std::uint32_t color = instance.colors.of(dp.color_face);
+    std::uint32_t color = instance.colors.of(dp.color_face);
     if (is_hidden(color) || out_of_view(dp, camera)) continue;
+    if (camera.cut_solid && !is_highlighted(color)) color = (color & 0xffffff) | kSolidColor;
     const Facing side = facing(dp, camera);
     if (camera.cull_turned_away && side == Facing::away) continue;
     const double radius_px = footprints.add(camera, dp.center, dp.radius);
@@ -315,14 +316,15 @@ std::uint32_t DrawList::primitives() const {
   return n;
 }
 
-void build_draw_list(const Scene::Impl& scene, const ViewRays& view, bool flats, DrawList& list) {
+void build_draw_list(const Scene::Impl& scene, const ViewRays& view,
+                     std::span<const DrawOptions::Section> sections, bool flats, DrawList& list) {
   list.instances.clear();
   list.items.clear();
   list.groups.clear();
   list.rectangles.clear();
   list.runs.clear();
   depth_range(scene, view, list);
-  const std::array<Plane3, 4> sides = side_planes(view);
+  const SidePlanes sides = side_planes(view, sections);
   Footprints footprints(view, list.bands);
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "scene.h"
@@ -84,7 +85,8 @@ struct DrawList {
 
 /// Resets `list` and fills it; keeps its memory.
 /// Without `flats` no kind is one of kFlatPieces.
-void build_draw_list(const Scene::Impl& scene, const ViewRays& view, bool flats, DrawList& list);
+void build_draw_list(const Scene::Impl& scene, const ViewRays& view,
+                     std::span<const DrawOptions::Section> sections, bool flats, DrawList& list);
 
 }  // namespace dupin
 

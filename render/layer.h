@@ -69,9 +69,9 @@ class Layer {
   /// Chooses what this pass draws, on the CPU, and uploads what the choice needs: nothing of placements that
   /// are not visible.
   virtual Status find(const LayerPass& pass) = 0;
-  /// Draws it. Ids and depth are bound, the depth test keeps what is nearer; nothing is culled or blended.
-  /// What of that the layer changes (it may draw into pictures of its own too) is put back for the next
-  /// layer, but for capabilities that it enables besides.
+  /// Draws it (to_clip() cuts it by the sections). Ids and depth are bound, the depth test keeps what is
+  /// nearer; nothing is culled or blended. What of that the layer changes (it may draw into pictures of its
+  /// own too) is put back for the next layer, but for capabilities that it enables besides.
   virtual Status draw(const LayerPass& pass) = 0;
   /// Primitives that the last find() chose, in all placements.
   virtual std::uint32_t drawn() const = 0;

@@ -24,8 +24,8 @@ Plane3 to_part(const Plane3& plane, const SceneInstance& instance, const Vec3& a
 
 }  // namespace
 
-std::array<Plane3, 4> side_planes(const ViewRays& view) {
-  std::array<Plane3, 4> planes;
+SidePlanes side_planes(const ViewRays& view, std::span<const DrawOptions::Section> sections) {
+  SidePlanes sides;
   for (int i = 0; i < 4; ++i) {
     const double sign = i & 1 ? 1 : -1;
     const Vec3 axis = i < 2 ? view.right : view.up;
@@ -39,15 +39,21 @@ std::array<Plane3, 4> side_planes(const ViewRays& view) {
       d = 1 - sign * o / s;
     }
     const double l = length(n);
-    planes[static_cast<std::size_t>(i)] = {n / l, d / l - dot(n / l, view.eye)};
+    sides.planes[static_cast<std::size_t>(i)] = {n / l, d / l - dot(n / l, view.eye)};
   }
-  return planes;
+  for (const DrawOptions::Section& section : sections) {
+    const double l = length(section.normal);
+    sides.planes[sides.count++] = {section.normal / l, section.offset / l};
+  }
+  return sides;
 }
 
 PartCamera part_camera(const SceneInstance& instance, const ScenePart& part, const ViewRays& view,
-                       const std::array<Plane3, 4>& sides) {
+                       const SidePlanes& sides) {
   PartCamera camera;
-  for (std::size_t i = 0; i < 4; ++i) camera.sides[i] = to_part(sides[i], instance, part.anchor, true);
+  camera.sides.count = sides.count;
+  for (std::size_t i = 0; i < sides.count; ++i)
+    camera.sides.planes[i] = to_part(sides.planes[i], instance, part.anchor, true);
   camera.depth = to_part({view.forward, -dot(view.forward, view.eye)}, instance, part.anchor, false);
   const auto [row_x, row_y] = clip_rows(view);
   const std::array<Plane3, 2> rows{row_x, row_y};
@@ -55,10 +61,11 @@ PartCamera part_camera(const SceneInstance& instance, const ScenePart& part, con
   camera.perspective = view.perspective;
   const Vec3 eye = transform_point(instance.to_part, view.eye);
   camera.eye = view.perspective ? eye - part.anchor : -(instance.to_part.linear * view.forward);
-  // From inside a solid, cut open by the nearest depth, or where faces are hidden, its inner sides can be
-  // seen.
+  // From inside a solid, or where it is open (cut by the nearest depth or a section, or with hidden faces),
+  // its inner sides can be seen.
   camera.cull_turned_away =
-      part.closed && !instance.hidden_faces && !(view.perspective && part.box.contains(eye));
+      part.closed && !sides.cut() && !instance.hidden_faces && !(view.perspective && part.box.contains(eye));
+  camera.cut_solid = part.closed && sides.cut() && !instance.hidden_faces;
   return camera;
 }
 

@@ -3,6 +3,7 @@
 #define DUPIN_RENDER_PART_CAMERA_H
 
 #include <array>
+#include <span>
 
 #include "scene.h"
 #include "view_rays.h"
@@ -15,25 +16,36 @@ struct Plane3 {
   double d;
 };
 
-/// The picture's four sides as planes in model space, inside positive, normals unit.
-std::array<Plane3, 4> side_planes(const ViewRays& view);
+/// What bounds what can be seen: the picture's four sides and the sections. Inside is positive, normals are
+/// unit.
+struct SidePlanes {
+  std::array<Plane3, 4 + kMostSections> planes;
+  std::size_t count = 4;
+  bool cut() const { return count > 4; }
+  const Plane3* begin() const { return planes.data(); }
+  const Plane3* end() const { return planes.data() + count; }
+};
+
+/// In model space.
+SidePlanes side_planes(const ViewRays& view, std::span<const DrawOptions::Section> sections);
 
 /// In the part's space relative to its anchor.
 struct PartCamera {
-  std::array<Plane3, 4> sides;
+  SidePlanes sides;
   Plane3 depth;                ///< its value is the depth
   std::array<Plane3, 2> rows;  ///< their values are clip coordinates X and Y
   Vec3 eye;                    ///< or, in parallel, the direction towards the viewer
   bool perspective;
   bool cull_turned_away;
+  bool cut_solid;  ///< by a section: one looks into it where its inner side is seen
 };
 
 /// Whether nothing of a box (in the part's space, not relative to the anchor) can be in the picture.
 bool out_of_view(const PartCamera& camera, const Box3& box, const Vec3& anchor);
 
-/// `sides`: side_planes(view), which all placements share.
+/// `sides`: side_planes(view, …), which all placements share.
 PartCamera part_camera(const SceneInstance& instance, const ScenePart& part, const ViewRays& view,
-                       const std::array<Plane3, 4>& sides);
+                       const SidePlanes& sides);
 
 }  // namespace dupin
 

@@ -164,7 +164,7 @@ Status PointLayer::find(const LayerPass& pass) {
   run_list_.clear();
   drawn_ = 0;
   std::vector<std::uint32_t> texels;
-  const std::array<Plane3, 4> sides = side_planes(pass.view);
+  const SidePlanes sides = side_planes(pass.view, pass.options.sections);
   for (std::uint32_t i = 0; i < pass.scene.instances.size(); ++i) {
     const SceneInstance& instance = pass.scene.instances[i];
     const ScenePart& part = pass.scene.parts[instance.part];

@@ -1,15 +1,38 @@
 // Building programs on first use, and the uniforms that all of them share.
+#include <algorithm>
+
 #include "renderer_impl.h"
 
 namespace dupin {
+namespace {
 
-Result<GLuint> Renderer::Impl::program(const std::string& key, const ProgramText& text) {
+/// The section's value, in units of its normal's length, as a function of clip X, Y, the depth and 1.
+std::array<float, 4> section_terms(const DrawOptions::Section& section, const ViewRays& view) {
+  const Vec3 n = normalized(section.normal);
+  // A point is  eye + z forward + (w ox + sx X) right + (w oy + sy Y) up,  w the depth z or, in parallel, 1.
+  const double shift = dot(n, view.right * view.ox + view.up * view.oy);
+  const double along = dot(n, view.forward),
+               at_eye = dot(n, view.eye) + section.offset / length(section.normal);
+  return {static_cast<float>(view.sx * dot(n, view.right)), static_cast<float>(view.sy * dot(n, view.up)),
+          static_cast<float>(along + (view.perspective ? shift : 0)),
+          static_cast<float>(at_eye + (view.perspective ? 0 : shift))};
+}
+
+}  // namespace
+
+Result<GLuint> Renderer::Impl::program(const std::string& wanted, const ProgramText& text) {
+  // Whatever draws proxies is cut by the sections.
+  const bool cut = !sections_.empty() && !text.vertex.empty() &&
+                   std::find(text.vertex.begin(), text.vertex.end(), "proxy.glsl") != text.vertex.end();
+  const std::string number = std::to_string(sections_.size());
+  const std::string key = cut ? wanted + " cut " + number : wanted;
   const auto found = programs_.find(key);
   if (found != programs_.end()) {
     gl->UseProgram(found->second.name());
     return found->second.name();
   }
   ProgramText full = text;
+  if (cut) full.defines.push_back("SECTIONS " + number);
   full.units = {{"heap", kHeapUnit},
                 {"instances", kInstancesUnit},
                 {"slots", kSlotsUnit},
@@ -47,6 +70,11 @@ void Renderer::Impl::set_view(GLuint name, const ViewRays& view) const {
   gl->Uniform2f(location("axis_scale"), static_cast<float>(1 / view.sx), static_cast<float>(1 / view.sy));
   gl->Uniform2f(location("ray_scale"), static_cast<float>(view.sx), static_cast<float>(view.sy));
   gl->Uniform2f(location("axis_offset"), static_cast<float>(view.ox), static_cast<float>(view.oy));
+  for (std::size_t i = 0; i < sections_.size(); ++i) {
+    const auto value = section_terms(sections_[i], view);
+    gl->Uniform4f(location(("sections[" + std::to_string(i) + "]").c_str()), value[0], value[1], value[2],
+                  value[3]);
+  }
   const Vec3 back = -view.forward;
   const float axes[9] = {
       static_cast<float>(view.right.x), static_cast<float>(view.right.y), static_cast<float>(view.right.z),

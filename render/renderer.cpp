@@ -54,6 +54,13 @@ std::string text_of(const Gl& gl, GLenum what) {
 Status check(const DrawOptions& options) {
   if (options.samples < 1 || options.samples > 256)
     return {StatusCode::invalid_argument, "a pixel can have 1 to 256 samples"};
+  if (options.sections.size() > kMostSections)
+    return {StatusCode::invalid_argument,
+            "a model can be cut by " + std::to_string(kMostSections) + " sections"};
+  for (const DrawOptions::Section& section : options.sections)
+    if (const double l = length(section.normal);
+        !(l > 0 && std::isfinite(l) && std::isfinite(section.offset)))
+      return {StatusCode::invalid_argument, "a section needs a direction and a finite offset"};
   if ((options.outputs & kUv) && !options.exact_model)
     return {StatusCode::invalid_argument, "parameters need the model"};
   if (options.lights.size() > kMostLights)
@@ -161,8 +168,8 @@ Status Renderer::Impl::draw_samples(const Scene::Impl& scene, const ViewRays& vi
   Status status = prepare_targets(view.width, view.height,
                                   others | color | exact | (screen ? 1U << kScreenPicture : 0U), format);
   const bool together = options.samples == 1 || !color;
-  const bool at_once =
-      screen && !floats && drawn_at_once(options.shading, scene.highlights) && options.lights.empty();
+  const bool at_once = screen && !floats && drawn_at_once(options.shading, scene.highlights) &&
+                       options.lights.empty() && options.sections.empty();
   if (at_once && status.ok() && !together) prepare_sample(view.width, view.height);
   for (int i = 0; i < options.samples && status.ok() && !together; ++i) {
     const Vec2 offset = sample_offset(i, options.samples);

@@ -57,6 +57,7 @@ enum Output : unsigned {
 };
 
 inline constexpr std::size_t kMostLights = 8;
+inline constexpr std::size_t kMostSections = 6;
 
 struct DrawOptions {
   unsigned outputs = kColor;
@@ -72,6 +73,14 @@ struct DrawOptions {
     Color color{1, 1, 1, 1};  ///< linear
   };
   std::vector<Light> lights;
+  /// Cuts the model open: only points with normal·p + offset >= 0 are drawn, in model space, for each of at
+  /// most kMostSections. Where one looks into a solid that is cut its colour is hatched; everything else says
+  /// what is seen there of its inner side.
+  struct Section {
+    Vec3 normal;
+    double offset = 0;
+  };
+  std::vector<Section> sections;
   double curvature_scale = 0;  ///< |curvature| that gets the full colour; 0: chosen from the scene's size
   /// The model that the scene was made from, for draw() and draw_only(). With it curvatures, as outputs and
   /// as colours, are the exact surface's at its point nearest to the drawn one. That is worked out on the

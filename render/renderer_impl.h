@@ -141,7 +141,8 @@ class Renderer::Impl {
 
   std::map<std::string, GlProgram> programs_;
   DrawList list_;
-  bool flats_ = false;  ///< vertex shaders may hand on as much as kFlatPieces need
+  std::vector<DrawOptions::Section> sections_;  ///< this pass's
+  bool flats_ = false;                          ///< vertex shaders may hand on as much as kFlatPieces need
   TexelBuffer instances_, slots_, runs_, rectangles_;
   GlBuffer items_, quads_, prisms_;
   GlVertexArray item_array_, quad_array_, prism_array_, empty_array_;

@@ -47,7 +47,8 @@ struct ScenePart {
 };
 
 /// A color's word is sRGB of 8 bits each, r lowest; the highest byte says more of the face.
-inline constexpr std::uint32_t kPlainColor = 0xff000000, kHighlightColor = 0xfe000000, kHiddenColor = 0;
+inline constexpr std::uint32_t kPlainColor = 0xff000000, kHighlightColor = 0xfe000000,
+                               kSolidColor = 0xfd000000, kHiddenColor = 0;
 constexpr bool is_hidden(std::uint32_t color) {
   return color >> 24 == 0;
 }

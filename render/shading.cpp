@@ -56,6 +56,7 @@ Variant shading_variant(unsigned pictures, const DrawOptions& options, const Lay
     if (pictures & 1U << i) v.define(std::string(kLocations[i]) + ' ' + std::to_string(location++));
   if (color) v.define("COLOR");
   if (color && wants_exact_colors(options)) v.define("EXACT_CURVATURES");
+  if (color && !options.sections.empty()) v.define("CUT");
   if (color) v.define("SHADING " + std::to_string(static_cast<int>(options.shading)));
   if (color && !options.lights.empty()) v.define("LIGHTS " + std::to_string(options.lights.size()));
   if (pictures & 1U << kNormalDepthPicture) v.define("NORMAL_DEPTH");

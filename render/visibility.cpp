@@ -221,6 +221,7 @@ void Renderer::Impl::bind_visibility() {
   gl->FrontFace(GL_CW);  // the picture's rows run downwards
   gl->CullFace(GL_FRONT);
   if (gl->ClipControl) gl->ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  for (std::size_t i = 0; i < sections_.size(); ++i) gl->Enable(static_cast<GLenum>(GL_CLIP_DISTANCE0 + i));
 }
 
 Status Renderer::Impl::each_layer(const Pass& pass,
@@ -253,10 +254,12 @@ Status Renderer::Impl::draw_visibility(const Pass& pass) {
   if (status.ok()) status = draw_triangles(pass);
   if (pass.at_once) attach_colors(nullptr);
   if (!status.ok()) return status;
-  return each_layer(pass, [&](Layer& layer, const LayerPass& own) {
+  status = each_layer(pass, [&](Layer& layer, const LayerPass& own) {
     bind_visibility();
     return layer.draw(own);
   });
+  for (std::size_t i = 0; i < sections_.size(); ++i) gl->Disable(static_cast<GLenum>(GL_CLIP_DISTANCE0 + i));
+  return status;
 }
 
 Status Renderer::Impl::run(const Pass& pass) {
@@ -265,7 +268,8 @@ Status Renderer::Impl::run(const Pass& pass) {
     pass.scene->colors.assign(words.data(), words.size() * 4, GL_STATIC_DRAW);
   }
   pass.scene->colors_changed = false;
-  build_draw_list(*pass.scene, pass.view, flats_, list_);
+  sections_ = pass.options->sections;
+  build_draw_list(*pass.scene, pass.view, sections_, flats_, list_);
   view_spread_ = pass.view.perspective ? 1.0F : 0.0F;
   upload_list(*pass.scene);
   Status status = each_layer(pass, [](Layer& layer, const LayerPass& own) { return layer.find(own); });

@@ -14,8 +14,17 @@ flat in vec4 cubic;
 layout(location = 1) out vec4 out_color;
 #endif
 
-// Between the prism's ends and the footprint's sides, and not too near the eye.
+#ifdef SECTIONS
+uniform vec4 sections[SECTIONS];  // see proxy.glsl
+#endif
+
+// Between the prism's ends and the footprint's sides, not too near the eye and not cut away.
 bool in_prism(vec3 at, float z) {
+#ifdef SECTIONS
+  vec4 place = vec4((gl_FragCoord.xy * pixel - 1.0) * reach(z), z, 1.0);
+  for (int i = 0; i < SECTIONS; ++i)
+    if (dot(sections[i], place) < 0.0) return false;
+#endif
   vec3 here = vec3(at.xy, 1.0);
   float sides = min(min(dot(side0, here), dot(side1, here)), min(dot(side2, here), dot(side3, here)));
   float ends = min(at.z - depth.y, depth.z - at.z) + depth.w;

@@ -134,6 +134,7 @@ void main() {
 #else
   gl_Position = vec4(picture_corner(c01, c23, vec2(t5.y, t5.z), rx, ry, rf, size), 0.5, 1.0);
 #endif
+  cut_nothing();  // curved.frag does, point by point
 #ifdef EDGES
   ink = ink_for(size);
 #endif

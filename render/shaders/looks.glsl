@@ -9,6 +9,13 @@ vec3 from_srgb(uint word) {
 bool is_highlighted(uint color) { return color >> 24 == 0xfeu; }
 const float kHighlight = 0.6;  // how much of it is seen where colors show something else
 
+// Of a solid that is cut open. Where its inner side is seen, a drawing has hatches.
+bool is_solid(uint color) { return color >> 24 == 0xfdu; }
+vec3 hatched(vec3 color, vec2 at_px) {
+  float stripe = abs(fract((at_px.x + at_px.y) / 9.0) - 0.5) * 9.0;
+  return mix(0.35 * color, 0.8 * color, smoothstep(0.4, 1.4, stripe));
+}
+
 // View space with z towards the viewer: from above left.
 const vec3 kKeyLight = vec3(-0.42, 0.62, 0.66);
 

@@ -7,8 +7,23 @@ uniform float zero_to_one;     // 1: clip space's depth is that of the window; 0
 
 const float kGrow = 0.25;  // pixels
 
+#ifdef SECTIONS
+uniform vec4 sections[SECTIONS];  // what is seen has values >= 0 of  dot(section, (clip X, clip Y, depth, 1))
+out float gl_ClipDistance[SECTIONS];
+void cut(vec2 xy, float depth) {
+  for (int i = 0; i < SECTIONS; ++i) gl_ClipDistance[i] = dot(sections[i], vec4(xy, depth, 1.0));
+}
+void cut_nothing() {
+  for (int i = 0; i < SECTIONS; ++i) gl_ClipDistance[i] = 1.0;
+}
+#else
+void cut(vec2 xy, float depth) {}
+void cut_nothing() {}
+#endif
+
 // Clip coordinates of a point from its clip X, Y and its depth.
 vec4 to_clip(vec2 xy, float depth) {
+  cut(xy, depth);
   float w = spread > 0.0 ? depth : 1.0;
   float z = spread > 0.0 ? depth_terms.z : depth_terms.x + depth_terms.y * depth;
   return vec4(xy, zero_to_one > 0.5 ? z : 2.0 * z - w, w);

@@ -49,6 +49,10 @@ vec3 picture_color(Surface x, vec2 at) {
 #if SHADING > 0
   if (is_highlighted(x.color)) c = mix(c, lit(from_srgb(x.color), n, v), kHighlight);
 #endif
+#ifdef CUT
+  if (is_solid(x.color) && dot(x.normal, v) < 0.0)
+    return hatched(from_srgb(only_color != 0u ? only_color : x.color), gl_FragCoord.xy);
+#endif
   return mix(c, 0.06 * c, 0.9 * x.edge);
 }
 #endif

@@ -150,20 +150,17 @@ TEST_P(Changes, ThePicture) {
   render(folder, "b.png", GetParam());
   EXPECT_FALSE(read_file(folder.path("a.png")) == read_file(folder.path("b.png")));
 }
-INSTANTIATE_TEST_SUITE_P(Render, Changes,
-                         testing::Values(std::vector<std::string>{"--view", "top"},
-                                         std::vector<std::string>{"--no-edges"},
-                                         std::vector<std::string>{"--background", "black"},
-                                         std::vector<std::string>{"--background", "none"},
-                                         std::vector<std::string>{"--color", "red"},
-                                         std::vector<std::string>{"--orthographic"},
-                                         std::vector<std::string>{"--samples", "1"},
-                                         std::vector<std::string>{"--fov", "60", "--eye=200,-200,200"},
-                                         std::vector<std::string>{"--shading", "normal"},
-                                         std::vector<std::string>{"--shading", "zebra"},
-                                         std::vector<std::string>{"--shading", "mean"},
-                                         std::vector<std::string>{"--shading", "face"},
-                                         std::vector<std::string>{"--shading", "primitive"}));
+INSTANTIATE_TEST_SUITE_P(
+    Render, Changes,
+    testing::Values(
+        std::vector<std::string>{"--view", "top"}, std::vector<std::string>{"--no-edges"},
+        std::vector<std::string>{"--background", "black"}, std::vector<std::string>{"--background", "none"},
+        std::vector<std::string>{"--color", "red"}, std::vector<std::string>{"--orthographic"},
+        std::vector<std::string>{"--samples", "1"}, std::vector<std::string>{"--section=1,0,0,-20"},
+        std::vector<std::string>{"--fov", "60", "--eye=200,-200,200"},
+        std::vector<std::string>{"--shading", "normal"}, std::vector<std::string>{"--shading", "zebra"},
+        std::vector<std::string>{"--shading", "mean"}, std::vector<std::string>{"--shading", "face"},
+        std::vector<std::string>{"--shading", "primitive"}));
 
 TEST(Render, BothDevicesDraw) {
   const Folder folder;

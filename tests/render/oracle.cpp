@@ -38,6 +38,11 @@ void curvatures(const QuadricDp& dp, const Vec3& p, double& k1, double& k2) {
   k2 = mean >= 0 ? mean - r : mean + r;
 }
 
+bool cut_away(const Sections& sections, const Vec3& p) {
+  return std::any_of(sections.begin(), sections.end(),
+                     [&](const auto& section) { return dot(section.normal, p) + section.offset < 0; });
+}
+
 }  // namespace
 
 Ray pixel_ray(const Camera& camera, double column, double row) {
@@ -51,7 +56,8 @@ Ray pixel_ray(const Camera& camera, double column, double row) {
   return camera.orthographic ? Ray{camera.eye + across, -axes.back} : Ray{camera.eye, across - axes.back};
 }
 
-std::optional<OracleHit> cast(const HandMade& scene, const Camera& camera, const Ray& ray) {
+std::optional<OracleHit> cast(const HandMade& scene, const Camera& camera, const Ray& ray,
+                              const Sections& sections) {
   std::optional<OracleHit> best;
   const PartDps& part = scene.dps.parts[0];
   for (std::size_t k = 0; k < scene.model.instances.size(); ++k) {
@@ -68,7 +74,7 @@ std::optional<OracleHit> cast(const HandMade& scene, const Camera& camera, const
         Vec3 p = lo + ld * t[r];
         if (dp.planar) p.z = 0;
         if ((!camera.orthographic && t[r] <= 0) || (best && t[r] >= best->depth) ||
-            !region_contains(part, dp, p))
+            !region_contains(part, dp, p) || cut_away(sections, ray.origin + ray.direction * t[r]))
           continue;
         OracleHit hit;
         hit.depth = t[r];
@@ -88,13 +94,14 @@ std::optional<OracleHit> cast(const HandMade& scene, const Camera& camera, const
   return best;
 }
 
-Differences differences(const HandMade& scene, const Camera& camera, const Frame& frame) {
+Differences differences(const HandMade& scene, const Camera& camera, const Frame& frame,
+                        const Sections& sections) {
   Differences d;
   const double degree = 180 / 3.14159265358979323846;
   for (int row = 0; row < camera.height; ++row) {
     for (int column = 0; column < camera.width; ++column) {
       const std::size_t i = static_cast<std::size_t>(row * camera.width + column);
-      const auto hit = cast(scene, camera, pixel_ray(camera, column, row));
+      const auto hit = cast(scene, camera, pixel_ray(camera, column, row), sections);
       ++d.pixels;
       d.covered += hit.has_value();
       if (hit.has_value() != (frame.primitive[i] != 0)) ++d.coverage;

@@ -23,8 +23,11 @@ struct Ray {
 };
 Ray pixel_ray(const Camera& camera, double column, double row);
 
+using Sections = std::vector<DrawOptions::Section>;
+
 /// What is seen through (column + ½, row + ½).
-std::optional<OracleHit> cast(const HandMade& scene, const Camera& camera, const Ray& ray);
+std::optional<OracleHit> cast(const HandMade& scene, const Camera& camera, const Ray& ray,
+                              const Sections& sections = {});
 
 /// A frame with every number picture, held against the ray caster at every pixel.
 struct Differences {
@@ -34,7 +37,8 @@ struct Differences {
   double depth_px = 0, normal_degrees = 0, curvature = 0,
          position_px = 0;  ///< largest; curvature relative to the primitive's largest
 };
-Differences differences(const HandMade& scene, const Camera& camera, const Frame& frame);
+Differences differences(const HandMade& scene, const Camera& camera, const Frame& frame,
+                        const Sections& sections = {});
 
 }  // namespace dupin::testing
 
