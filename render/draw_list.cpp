@@ -175,10 +175,16 @@ std::uint64_t sort_key(std::uint32_t kind, float depth) {
          ordered;
 }
 
+/// The bound where the DP is nearest to the eye.
+double bound_px(const DpBounds& dp, double depth, double scale, const ViewRays& view, const DrawList& list) {
+  const double nearest = std::max(depth - scale * dp.radius, list.near_depth);
+  return scale * dp.bound / pixel_size(view, nearest);
+}
+
 void add_dps(const SceneInstance& instance, std::uint32_t index, const ScenePart& part,
-             const PartCamera& camera, Footprints& footprints, bool flats,
-             std::vector<Candidate>& candidates) {
-  const double depth_scale = length(camera.depth.n);
+             const PartCamera& camera, const ViewRays& view, Footprints& footprints, bool flats,
+             DrawList& list, std::vector<Candidate>& candidates) {
+  const double depth_scale = length(camera.depth.n), largest_scale = depth_scale * instance.scale_ratio;
   for (std::size_t i = 0; i < part.dps.size(); ++i) {
     const DpBounds& dp = part.dps[i];
     std::uint32_t color = instance.colors.of(dp.color_face);
@@ -188,6 +194,7 @@ void add_dps(const SceneInstance& instance, std::uint32_t index, const ScenePart
     if (camera.cull_turned_away && side == Facing::away) continue;
     const double radius_px = footprints.add(camera, dp.center, dp.radius);
     const double depth = dot(camera.depth.n, dp.center) + camera.depth.d;
+    list.bound_px = std::max(list.bound_px, bound_px(dp, depth, largest_scale, view, list));
     std::uint32_t kind = flats ? dp.kind : dp.kind & ~kFlatKind;
     if (kind & kCurvedKind) {
       if (camera.cull_turned_away || side != Facing::unknown) kind |= kOneRootKind;
@@ -323,6 +330,7 @@ void build_draw_list(const Scene::Impl& scene, const ViewRays& view,
   list.groups.clear();
   list.rectangles.clear();
   list.runs.clear();
+  list.bound_px = 0;
   depth_range(scene, view, list);
   const SidePlanes sides = side_planes(view, sections);
   Footprints footprints(view, list.bands);
@@ -343,7 +351,7 @@ void build_draw_list(const Scene::Impl& scene, const ViewRays& view,
     }
     if (!part.layer_box.empty())
       footprints.add(camera, part.layer_box.center() - part.anchor, part.layer_box.diagonal() / 2);
-    add_dps(instance, index, part, camera, footprints, flats, candidates);
+    add_dps(instance, index, part, camera, view, footprints, flats, list, candidates);
   }
   // Equal keys keep the model's order, by the primitive's number: the same list whatever the sorting
   // algorithm.

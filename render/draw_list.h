@@ -76,6 +76,7 @@ struct DrawList {
   /// The depth buffer holds x + y·depth + z/depth: 1 at the nearest depth, and less farther away, as floats
   /// are densest near 0, where perspective squeezes depths together. An empty pixel has 0.
   std::array<double, 3> depth_terms{};
+  double bound_px = 0;            ///< largest of the DPs' bounds
   double farthest_in_buffer = 0;  ///< the least that anything drawn has there
 
   /// Between an empty pixel's value and that of anything drawn.

@@ -1,5 +1,7 @@
 // Drawing into a host's framebuffer: a picture of our own, put there pixel by pixel against the host's depth
 // buffer.
+#include <chrono>
+
 #include "gl_state.h"
 #include "renderer_impl.h"
 
@@ -77,17 +79,48 @@ Status Renderer::Impl::composite(const HostView& host, const ViewRays& view, con
   return {};
 }
 
-Status Renderer::draw_into_host(Scene& scene, const HostView& host, const DrawOptions& options) {
+Status Renderer::draw_into_host(Scene& scene, const HostView& host, const DrawOptions& options,
+                                FrameStats* stats) {
+  const auto start = std::chrono::steady_clock::now();
   auto view = view_rays(host.view, host.projection, host.viewport[2], host.viewport[3]);
   if (!view) return view.status();
   DrawOptions own = options;
   own.outputs = own_depth_picture(own) ? kScreen | kDepth : kScreen;
   own.background.reset();
-  const Status valid = check(own);
+  const Status valid = check(own, scene.impl());
   if (!valid.ok()) return valid;
   const GlStateGuard state(*impl_->gl);
-  const Status drawn = impl_->draw_samples(scene.impl(), *view, own);
-  return drawn.ok() ? impl_->composite(host, *view, own, state) : drawn;
+  Status status = impl_->draw_samples(scene.impl(), *view, own);
+  if (status.ok()) status = impl_->composite(host, *view, own, state);
+  if (status.ok() && stats) {
+    *stats = impl_->stats(scene.impl());
+    const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
+    stats->milliseconds = time.count();
+  }
+  return status;
+}
+
+Result<Frame> Renderer::read_host_view(Scene& scene, const HostView& host,
+                                       const std::array<int, 4>& rectangle, const DrawOptions& options) {
+  const auto whole = view_rays(host.view, host.projection, host.viewport[2], host.viewport[3]);
+  if (!whole) return whole.status();
+  if (rectangle[2] < 1 || rectangle[3] < 1)
+    return {StatusCode::invalid_argument, "a rectangle needs at least one pixel"};
+  const Status valid = check(options, scene.impl());
+  if (!valid.ok()) return valid;
+  const ViewRays view = part_of(*whole, rectangle);
+  const GlStateGuard guard(*impl_->gl);
+  // Pictures of their own: those of whole frames would be made anew for every pick.
+  impl_->swap_targets();
+  const Status status = impl_->draw_samples(scene.impl(), view, options);
+  Frame frame;
+  if (status.ok()) {
+    frame.stats = impl_->stats(scene.impl());
+    impl_->read_frame(scene.impl(), view, options, frame);
+  }
+  impl_->swap_targets();
+  if (!status.ok()) return status;
+  return frame;
 }
 
 }  // namespace dupin

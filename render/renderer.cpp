@@ -37,13 +37,6 @@ bool drawn_at_once(Shading shading, bool highlights) {
          shading == Shading::primitive;
 }
 
-Status check(const DrawOptions& options, const Scene::Impl& scene) {
-  if (options.exact_model && (options.exact_model->parts.size() != scene.parts.size() ||
-                              options.exact_model->instances.size() != scene.instances.size()))
-    return {StatusCode::invalid_argument, "the model is not the one that the scene was made from"};
-  return check(options);
-}
-
 std::string text_of(const Gl& gl, GLenum what) {
   const auto* text = reinterpret_cast<const char*>(gl.GetString(what));
   return text ? text : "";
@@ -66,6 +59,13 @@ Status check(const DrawOptions& options) {
   if (options.lights.size() > kMostLights)
     return {StatusCode::invalid_argument, "a frame can have " + std::to_string(kMostLights) + " lights"};
   return {};
+}
+
+Status check(const DrawOptions& options, const Scene::Impl& scene) {
+  if (options.exact_model && (options.exact_model->parts.size() != scene.parts.size() ||
+                              options.exact_model->instances.size() != scene.instances.size()))
+    return {StatusCode::invalid_argument, "the model is not the one that the scene was made from"};
+  return check(options);
 }
 
 Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -97,6 +97,7 @@ Status Renderer::Impl::init(const GetProcAddress& get_proc_address) {
   for (GlVertexArray* array : {&item_array_, &quad_array_, &prism_array_, &empty_array_})
     *array = GlVertexArray(*gl);
   visibility_framebuffer_ = GlFramebuffer(*gl);
+  other_.visibility_framebuffer = GlFramebuffer(*gl);
   shading_framebuffer_ = GlFramebuffer(*gl);
   gl->BindVertexArray(item_array_.name());
   gl->BindBuffer(GL_ARRAY_BUFFER, items_.name());
@@ -191,9 +192,8 @@ Result<FrameStats> Renderer::draw_only(Scene& scene, const Camera& camera, const
   const Status status = impl_->draw_samples(scene.impl(), view_rays(camera), options);
   if (!status.ok()) return status;
   impl_->gl->Finish();
-  FrameStats stats;
+  FrameStats stats = impl_->stats(scene.impl());
   stats.milliseconds = milliseconds_since(start);
-  stats.primitives = impl_->drawn_primitives(scene.impl());
   return stats;
 }
 
@@ -207,8 +207,8 @@ Result<Frame> Renderer::draw(Scene& scene, const Camera& camera, const DrawOptio
   if (!status.ok()) return status;
   impl_->gl->Finish();
   Frame frame;
+  frame.stats = impl_->stats(scene.impl());
   frame.stats.milliseconds = milliseconds_since(start);
-  frame.stats.primitives = impl_->drawn_primitives(scene.impl());
   impl_->read_frame(scene.impl(), view, options, frame);
   return frame;
 }

@@ -93,6 +93,8 @@ struct DrawOptions {
 struct FrameStats {
   std::uint32_t primitives = 0;  ///< drawn after culling (DP instances, or triangles)
   std::uint64_t covered_pixels = 0;
+  /// Certified: the largest of what is drawn, in pixels where it is nearest; 0 for what promises nothing.
+  double bound_px = 0;
   double milliseconds = 0;  ///< culling and drawing, until the GPU is done; not reading back
 };
 
@@ -215,8 +217,15 @@ class Renderer {
   /// Draws without reading anything back; for timing. The picture is gone with the next call.
   Result<FrameStats> draw_only(Scene& scene, const Camera& camera, const DrawOptions& options);
 
-  /// Draws into the framebuffer that is bound for drawing, against and into its depth buffer.
-  Status draw_into_host(Scene& scene, const HostView& host, const DrawOptions& options);
+  /// Draws into the framebuffer that is bound for drawing, against and into its depth buffer. `stats`, if
+  /// any, has no covered pixels, and the time until the GPU has its orders.
+  Status draw_into_host(Scene& scene, const HostView& host, const DrawOptions& options,
+                        FrameStats* stats = nullptr);
+
+  /// What draw_into_host would draw in a rectangle (x, y, width, height) of the viewport, in pixels from its
+  /// lower left corner: for picking. The host's framebuffer is neither looked at nor touched.
+  Result<Frame> read_host_view(Scene& scene, const HostView& host, const std::array<int, 4>& rectangle,
+                               const DrawOptions& options);
 
   /// GL_RENDERER and GL_VERSION of the context.
   std::string gl_renderer() const;

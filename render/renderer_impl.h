@@ -22,6 +22,7 @@ struct Variant;  // of a shading program
 
 /// What is out of range in a caller's options.
 Status check(const DrawOptions& options);
+Status check(const DrawOptions& options, const Scene::Impl& scene);
 
 /// Texture units; every program that has a sampler of one of these names reads it there.
 enum Unit {
@@ -111,8 +112,10 @@ class Renderer::Impl {
   const GlVertexArray& empty_array() const { return empty_array_; }
   /// Ids and depth, and the state that drawing into them starts from.
   void bind_visibility();
-  /// Primitives that the last pass drew.
-  std::uint32_t drawn_primitives(const Scene::Impl& scene) const;
+  /// What the last pass drew.
+  FrameStats stats(const Scene::Impl& scene) const;
+  /// Exchanges the pictures that frames are drawn into with the other set of them.
+  void swap_targets();
 
  private:
   void upload_list(const Scene::Impl& scene);
@@ -153,6 +156,14 @@ class Renderer::Impl {
   GLenum color_format_ = 0;
   std::array<GlTexture, kPictures> pictures_;
   GlFramebuffer visibility_framebuffer_, shading_framebuffer_;
+  /// The other set: see swap_targets.
+  struct Targets {
+    int width = 0, height = 0;
+    GlTexture ids, depth, sample, curvatures;
+    GLenum color_format = 0;
+    std::array<GlTexture, kPictures> pictures;
+    GlFramebuffer visibility_framebuffer;
+  } other_;
 };
 
 }  // namespace dupin

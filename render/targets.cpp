@@ -68,6 +68,18 @@ Status Renderer::Impl::prepare_targets(int width, int height, unsigned pictures,
   return {};
 }
 
+void Renderer::Impl::swap_targets() {
+  std::swap(width_, other_.width);
+  std::swap(height_, other_.height);
+  std::swap(ids_, other_.ids);
+  std::swap(depth_, other_.depth);
+  std::swap(sample_, other_.sample);
+  std::swap(curvatures_, other_.curvatures);
+  std::swap(color_format_, other_.color_format);
+  std::swap(pictures_, other_.pictures);
+  std::swap(visibility_framebuffer_, other_.visibility_framebuffer);
+}
+
 void Renderer::Impl::prepare_sample(int width, int height) {
   if (!sample_) allocate(*gl, sample_, kFormats[kScreenPicture], width, height);
 }

@@ -66,6 +66,20 @@ ViewRays jittered(const ViewRays& view, double x_px, double y_px) {
   return result;
 }
 
+ViewRays part_of(const ViewRays& view, const std::array<int, 4>& rectangle) {
+  const auto [x, y, width, height] = rectangle;
+  const double left = x, top = view.height - y - height;
+  ViewRays part = view;
+  // Pixel (c, r) of the part is pixel (left + c, top + r) of the whole.
+  part.ox += view.sx * ((2 * left + width) / view.width - 1);
+  part.oy += view.sy * ((2 * top + height) / view.height - 1);
+  part.sx *= static_cast<double>(width) / view.width;
+  part.sy *= static_cast<double>(height) / view.height;
+  part.width = width;
+  part.height = height;
+  return part;
+}
+
 double pixel_size(const ViewRays& view, double depth) {
   const double size = std::max(std::abs(view.sx) * 2 / view.width, std::abs(view.sy) * 2 / view.height);
   return view.perspective ? size * depth : size;

@@ -37,6 +37,10 @@ Result<ViewRays> view_rays(const std::array<double, 16>& view, const std::array<
 /// The same view with every sample moved by a part of a pixel (right, down).
 ViewRays jittered(const ViewRays& view, double x_px, double y_px);
 
+/// The part of the view that a rectangle (x, y, width, height) sees, in pixels from the lower left corner:
+/// pixel for pixel the same rays.
+ViewRays part_of(const ViewRays& view, const std::array<int, 4>& rectangle);
+
 /// The edge of a pixel, in model units, at a depth; the larger of the two directions.
 double pixel_size(const ViewRays& view, double depth);
 

@@ -232,10 +232,12 @@ Status Renderer::Impl::each_layer(const Pass& pass,
   return status;
 }
 
-std::uint32_t Renderer::Impl::drawn_primitives(const Scene::Impl& scene) const {
-  std::uint32_t count = list_.primitives();
-  for (const auto& layer : scene.layers) count += layer->drawn();
-  return count;
+FrameStats Renderer::Impl::stats(const Scene::Impl& scene) const {
+  FrameStats stats;
+  stats.primitives = list_.primitives();
+  for (const auto& layer : scene.layers) stats.primitives += layer->drawn();
+  stats.bound_px = list_.bound_px;
+  return stats;
 }
 
 Status Renderer::Impl::draw_visibility(const Pass& pass) {
