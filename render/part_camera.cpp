@@ -48,6 +48,16 @@ SidePlanes side_planes(const ViewRays& view, std::span<const DrawOptions::Sectio
   return sides;
 }
 
+std::array<double, 4> section_terms(const DrawOptions::Section& section, const ViewRays& view) {
+  const Vec3 n = normalized(section.normal);
+  // A point is  eye + z forward + (w ox + sx X) right + (w oy + sy Y) up,  w the depth z or, in parallel, 1.
+  const double shift = dot(n, view.right * view.ox + view.up * view.oy);
+  const double along = dot(n, view.forward),
+               at_eye = dot(n, view.eye) + section.offset / length(section.normal);
+  return {view.sx * dot(n, view.right), view.sy * dot(n, view.up), along + (view.perspective ? shift : 0),
+          at_eye + (view.perspective ? 0 : shift)};
+}
+
 PartCamera part_camera(const SceneInstance& instance, const ScenePart& part, const ViewRays& view,
                        const SidePlanes& sides) {
   PartCamera camera;

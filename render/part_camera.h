@@ -29,6 +29,9 @@ struct SidePlanes {
 /// In model space.
 SidePlanes side_planes(const ViewRays& view, std::span<const DrawOptions::Section> sections);
 
+/// The section's value, in units of its normal's length, as a function of clip X, Y, the depth and 1.
+std::array<double, 4> section_terms(const DrawOptions::Section& section, const ViewRays& view);
+
 /// In the part's space relative to its anchor.
 struct PartCamera {
   SidePlanes sides;

@@ -65,7 +65,7 @@ CutView cut_view(const PartCamera& camera, const SceneInstance& instance, const 
                  const PointGrid& grid, const Vec3& anchor, const CutOptions& options) {
   CutView cut;
   for (std::size_t i = 0; i < 4; ++i) {
-    const Plane3 plane = to_grid(camera.sides[i], grid, anchor);
+    const Plane3 plane = to_grid(camera.sides.planes[i], grid, anchor);
     cut.sides[i] = {plane.n / grid.step, plane.d / grid.step};
   }
   cut.depth = to_grid(camera.depth, grid, anchor);

@@ -1,25 +1,10 @@
 // Building programs on first use, and the uniforms that all of them share.
 #include <algorithm>
 
+#include "part_camera.h"
 #include "renderer_impl.h"
 
 namespace dupin {
-namespace {
-
-/// The section's value, in units of its normal's length, as a function of clip X, Y, the depth and 1.
-std::array<float, 4> section_terms(const DrawOptions::Section& section, const ViewRays& view) {
-  const Vec3 n = normalized(section.normal);
-  // A point is  eye + z forward + (w ox + sx X) right + (w oy + sy Y) up,  w the depth z or, in parallel, 1.
-  const double shift = dot(n, view.right * view.ox + view.up * view.oy);
-  const double along = dot(n, view.forward),
-               at_eye = dot(n, view.eye) + section.offset / length(section.normal);
-  return {static_cast<float>(view.sx * dot(n, view.right)), static_cast<float>(view.sy * dot(n, view.up)),
-          static_cast<float>(along + (view.perspective ? shift : 0)),
-          static_cast<float>(at_eye + (view.perspective ? 0 : shift))};
-}
-
-}  // namespace
-
 Result<GLuint> Renderer::Impl::program(const std::string& wanted, const ProgramText& text) {
   // Whatever draws proxies is cut by the sections.
   const bool cut = !sections_.empty() && !text.vertex.empty() &&
@@ -72,8 +57,9 @@ void Renderer::Impl::set_view(GLuint name, const ViewRays& view) const {
   gl->Uniform2f(location("axis_offset"), static_cast<float>(view.ox), static_cast<float>(view.oy));
   for (std::size_t i = 0; i < sections_.size(); ++i) {
     const auto value = section_terms(sections_[i], view);
-    gl->Uniform4f(location(("sections[" + std::to_string(i) + "]").c_str()), value[0], value[1], value[2],
-                  value[3]);
+    const auto term = [&](std::size_t k) { return static_cast<float>(value[k]); };
+    gl->Uniform4f(location(("sections[" + std::to_string(i) + "]").c_str()), term(0), term(1), term(2),
+                  term(3));
   }
   const Vec3 back = -view.forward;
   const float axes[9] = {

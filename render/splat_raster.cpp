@@ -36,6 +36,13 @@ class Projector {
     const double w = p_.perspective ? 1 / clip.z : 1;
     return {(clip.x * w + 1) * half_width_, (clip.y * w + 1) * half_height_, buffer_depth(clip.z)};
   }
+  static double value_at(const std::array<double, 4>& section, const Vec3& clip) {
+    return section[0] * clip.x + section[1] * clip.y + section[2] * clip.z + section[3];
+  }
+  bool is_cut_away(const Vec3& clip) const {
+    return std::any_of(p_.sections.begin(), p_.sections.end(),
+                       [&](const auto& section) { return value_at(section, clip) < 0; });
+  }
   double buffer_depth(double depth) const {
     const auto& t = p_.depth_terms;
     return p_.perspective ? t[2] / depth : t[0] + t[1] * depth;
@@ -83,7 +90,7 @@ class SplatRaster::Points {
 
   void add(const EncodedNode& node, std::uint32_t number) {
     const Vec3 clip = projector_.clip(node_center(node));
-    if (projection_.perspective && !(clip.z > 0)) return;
+    if ((projection_.perspective && !(clip.z > 0)) || projector_.is_cut_away(clip)) return;
     const Projected at = projector_.project(clip);
     if (!is_usable(at)) return;
     const double steps = node_radius(node);
@@ -160,7 +167,7 @@ class SplatRaster::Triangles {
  private:
   struct Known {
     std::uint32_t index = 0xffffffffu;
-    bool usable = false;  ///< in front of the nearest depth, and in the guard band
+    bool usable = false;  ///< in front of the nearest depth, in the guard band, and not cut away
     Vec3 clip;
     Projected at;
   };
@@ -177,16 +184,17 @@ class SplatRaster::Triangles {
     known.clip = projector_.clip(node_center(node));
     known.usable = !projection_.perspective || known.clip.z >= projection_.nearest_depth;
     if (known.usable) known.at = projector_.project(known.clip);
-    known.usable = known.usable && is_usable(known.at);
+    known.usable = known.usable && is_usable(known.at) && !projector_.is_cut_away(known.clip);
     return known;
   }
 
-  /// Against the nearest depth and the guard band's four sides, in clip coordinates.
+  /// Against the nearest depth, the guard band's four sides and the sections, in clip coordinates.
   void cut(const Known* corners, std::uint32_t number) {
     std::vector<Vec3> polygon{corners[0].clip, corners[1].clip, corners[2].clip}, next;
     const double sx = 0.5 * raster_.width_, sy = 0.5 * raster_.height_;
     const double bx = kGuardBand / 2 / sx, by = kGuardBand / 2 / sy;
-    for (int side = 0; side < 5 && polygon.size() >= 3; ++side) {
+    const std::size_t sides = 5 + projection_.sections.size();
+    for (std::size_t side = 0; side < sides && polygon.size() >= 3; ++side) {
       const auto inside = [&](const Vec3& p) {
         const double w = projection_.perspective ? p.z : 1;
         switch (side) {
@@ -198,8 +206,10 @@ class SplatRaster::Triangles {
             return bx * w + p.x;
           case 3:
             return by * w - p.y;
-          default:
+          case 4:
             return by * w + p.y;
+          default:
+            return Projector::value_at(projection_.sections[side - 5], p);
         }
       };
       next.clear();

@@ -25,6 +25,8 @@ struct SplatProjection {
   double nearest_depth = 0;    ///< triangles are cut here; perspective only
   double pixels_per_step = 1;  ///< of a length of one step; in perspective at the depth 1
   double depth_per_step = 1;   ///< the most that a step changes the depth
+  /// What has a negative value of any of them, of clip X, Y, the depth and 1, is cut away.
+  std::span<const std::array<double, 4>> sections;
 };
 
 enum class Splatting {

@@ -73,7 +73,7 @@ class TreeLayers::Impl : public Layer {
 
   Status find(const LayerPass& pass) override {
     const auto start = std::chrono::steady_clock::now();
-    lists_.find(pass.scene, pass.view, options_);
+    lists_.find(pass.scene, pass.view, pass.options.sections, options_);
     stats_.cut_ms = milliseconds_since(start);
     const auto cut_done = std::chrono::steady_clock::now();
     if (lists_.gather(pass.scene))
@@ -192,11 +192,15 @@ class TreeLayers::Impl : public Layer {
     projection.nearest_depth = list.near_depth;
     projection.pixels_per_step = p.view.pixels_per_step;
     projection.depth_per_step = length(p.camera.depth.n) * grid.step;
+    projection.sections = sections_;
     return projection;
   }
 
   void rasterise(const LayerPass& pass) {
     raster_.begin(pass.view.width, pass.view.height);
+    sections_.clear();
+    for (const DrawOptions::Section& section : pass.options.sections)
+      sections_.push_back(section_terms(section, pass.view));
     const Splatting splatting = options_.reconstruct ? Splatting::visibility : Splatting::simple;
     const MeshArena& arena = lists_.arena();
     parallel_for(lists_.placed().size(), [&](std::size_t i) {
@@ -219,6 +223,7 @@ class TreeLayers::Impl : public Layer {
         layer_program(pass, "raster", {{"screen.vert"}, {"raster.frag"}, {}, {}, {{"splats", kLayerUnit}}});
     if (!name) return name.status();
     upload_picture(gl, first, last);
+    for (std::size_t i = 0; i < sections_.size(); ++i) gl.Disable(static_cast<GLenum>(GL_CLIP_DISTANCE0 + i));
     gl.BindVertexArray(pass.renderer.empty_array().name());
     gl.Uniform1f(gl.GetUniformLocation(*name, "screen_depth"), 0.5F);
     gl.Enable(GL_SCISSOR_TEST);
@@ -253,6 +258,7 @@ class TreeLayers::Impl : public Layer {
   const Scene::Impl* scene_ = nullptr;  ///< whose buffers these are
   TreeLists lists_;
   SplatRaster raster_;
+  std::vector<std::array<double, 4>> sections_;  ///< this pass's
   TexelBuffer points_buffer_, extras_buffer_, drawn_buffer_, runs_buffer_, grids_buffer_;
   GlTexture picture_;
   int picture_width_ = 0, picture_height_ = 0;

@@ -44,8 +44,9 @@ TreeLists::TreeLists(const Gl& gl, const std::vector<PartTree>& trees, const Sce
   looks_.resize(placed_.size());
 }
 
-void TreeLists::find(const Scene::Impl& scene, const ViewRays& view, const TreeLayerOptions& options) {
-  const std::array<Plane3, 4> sides = side_planes(view);
+void TreeLists::find(const Scene::Impl& scene, const ViewRays& view,
+                     std::span<const DrawOptions::Section> sections, const TreeLayerOptions& options) {
+  const SidePlanes sides = side_planes(view, sections);
   const CutOptions cut{options.threshold_px, options.silhouette, options.leaves_as_points};
   parallel_for(placed_.size(), [&](std::size_t i) {
     PlacedTree& p = placed_[i];
@@ -56,7 +57,7 @@ void TreeLists::find(const Scene::Impl& scene, const ViewRays& view, const TreeL
     p.view = cut_view(p.camera, instance, view, p.cut.tree().info().grid, part.anchor, cut);
     // Cones know what is closed; but from within anything may be seen from behind.
     const Vec3 eye = transform_point(instance.to_part, view.eye);
-    p.view.cull_turned_away = !(view.perspective && part.box.contains(eye));
+    p.view.cull_turned_away = sections.empty() && !(view.perspective && part.box.contains(eye));
     p.cut.update(p.view, options.coherent);
   });
 }

@@ -43,7 +43,8 @@ class TreeLists {
   TreeLists(const Gl& gl, const std::vector<PartTree>& trees, const Scene::Impl& scene, std::uint32_t layer);
 
   /// Finds the cuts for a view.
-  void find(const Scene::Impl& scene, const ViewRays& view, const TreeLayerOptions& options);
+  void find(const Scene::Impl& scene, const ViewRays& view, std::span<const DrawOptions::Section> sections,
+            const TreeLayerOptions& options);
   /// Fills the lists anew if a cut or a look has changed since; whether it did.
   bool gather(const Scene::Impl& scene);
 

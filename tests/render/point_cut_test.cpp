@@ -27,7 +27,7 @@ struct PlacedTree {
   }
   CutView view(const Camera& camera, const CutOptions& options = {}) const {
     const ViewRays rays = view_rays(camera);
-    const PartCamera in_part = part_camera(instance, part, rays, side_planes(rays));
+    const PartCamera in_part = part_camera(instance, part, rays, side_planes(rays, {}));
     return cut_view(in_part, instance, rays, tree->info().grid, part.anchor, options);
   }
 };

@@ -19,8 +19,22 @@ HostView host_view(const Camera& camera, double off_x, double off_y) {
     host.projection = {s / aspect, 0, 0, 0, 0, s, 0, 0, 0, 0, -2 / (far - near), 0, off_x, off_y, 0, 1};
   } else {
     const double f = 1 / std::tan(camera.fov_degrees * 3.14159265358979323846 / 360);
-    host.projection = {f / aspect, 0,     0, 0, 0, f, 0, 0, off_x, off_y, (far + near) / (near - far),
-                       -1,         0, 0, 2 * far * near / (near - far), 0};
+    host.projection = {f / aspect,
+                       0,
+                       0,
+                       0,
+                       0,
+                       f,
+                       0,
+                       0,
+                       off_x,
+                       off_y,
+                       (far + near) / (near - far),
+                       -1,
+                       0,
+                       0,
+                       2 * far * near / (near - far),
+                       0};
   }
   host.viewport = {7, 3, kWidth, kHeight};
   return host;
@@ -44,7 +58,8 @@ TEST_P(PartOfAView, HasTheSamePixelsAsTheWhole) {
   const auto whole = gl.renderer->read_host_view(*scene, host, {0, 0, kWidth, kHeight}, options);
   ASSERT_TRUE(whole.ok()) << whole.status().message;
   std::size_t seen = 0, other = 0;
-  const std::array<int, 4> rectangles[] = {{50, 40, 60, 50}, {80, 60, 1, 1}, {-5, 90, 30, 40}, {75, 55, 1, 1}};
+  const std::array<int, 4> rectangles[] = {
+      {50, 40, 60, 50}, {80, 60, 1, 1}, {-5, 90, 30, 40}, {75, 55, 1, 1}};
   for (const auto& [x, y, width, height] : rectangles) {
     const auto part = gl.renderer->read_host_view(*scene, host, {x, y, width, height}, options);
     ASSERT_TRUE(part.ok()) << part.status().message;
@@ -54,12 +69,14 @@ TEST_P(PartOfAView, HasTheSamePixelsAsTheWhole) {
       for (int c = 0; c < width; ++c) {
         const int column = x + c, row = kHeight - y - height + r;
         if (column < 0 || row < 0) continue;
-        const auto i = static_cast<std::size_t>(r * width + c), j = static_cast<std::size_t>(row * kWidth + column);
+        const auto i = static_cast<std::size_t>(r * width + c),
+                   j = static_cast<std::size_t>(row * kWidth + column);
         seen += part->face[i] != 0;
         other += part->face[i] != whole->face[j];
         if (part->face[i] == 0 || part->face[i] != whole->face[j]) continue;
         EXPECT_NEAR(part->depth[i], whole->depth[j], 1e-3 * whole->depth[j]);
-        for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(part->position[3 * i + k], whole->position[3 * j + k], 0.01);
+        for (std::size_t k = 0; k < 3; ++k)
+          EXPECT_NEAR(part->position[3 * i + k], whole->position[3 * j + k], 0.01);
       }
   }
   EXPECT_GT(seen, 800U);
@@ -75,9 +92,11 @@ TEST(PartOfAView, NeedsAPixelAndACamera) {
   TestDevice gl;
   const auto scene = gl.upload(made);
   HostView host = host_view(*fit_view(scene->box(), "top", {}), 0, 0);
-  EXPECT_EQ(gl.renderer->read_host_view(*scene, host, {0, 0, 0, 4}, {}).status().code, StatusCode::invalid_argument);
+  EXPECT_EQ(gl.renderer->read_host_view(*scene, host, {0, 0, 0, 4}, {}).status().code,
+            StatusCode::invalid_argument);
   host.view.fill(0);
-  EXPECT_EQ(gl.renderer->read_host_view(*scene, host, {0, 0, 1, 1}, {}).status().code, StatusCode::invalid_argument);
+  EXPECT_EQ(gl.renderer->read_host_view(*scene, host, {0, 0, 1, 1}, {}).status().code,
+            StatusCode::invalid_argument);
 }
 
 TEST(FrameStats, BoundsAreInPixelsAndGrowWithTheZoom) {

@@ -72,11 +72,11 @@ struct Drawn {
   }
 };
 
-Frame as_triangles(const Model& model, const Camera& camera) {
+Frame as_triangles(const Model& model, const Camera& camera, const DrawOptions& options = everything()) {
   TestDevice gl;
   auto scene = gl.renderer->upload(model, static_cast<const DpScene*>(nullptr));
   EXPECT_TRUE(scene.ok());
-  return gl.draw(**scene, camera, everything());
+  return gl.draw(**scene, camera, options);
 }
 
 struct Difference {
@@ -114,6 +114,25 @@ TEST(TreeLayer, NearIsAsItsTriangles) {
     EXPECT_LT(d.coverage, 1e-3);
     EXPECT_LT(d.color, 2e-3);
     EXPECT_LT(d.depth, 0.05);
+  }
+}
+
+TEST(TreeLayer, SectionsCutPointsAndTriangles) {
+  const Model model = model_of(bumpy(40));
+  DrawOptions options = everything();
+  options.sections = {{{1, 0.3, 0.2}, -0.1}, {{-0.2, 1, 0.5}, 0.3}};
+  for (const double distance : {3.5, 40.0}) {
+    const Camera camera = looking(distance);
+    const Frame frame = Drawn(model, {}).draw(camera, options);
+    const Frame whole = Drawn(model, {}).draw(camera);
+    const Frame triangles = as_triangles(model, camera, options);
+    EXPECT_LT(difference(triangles, frame, camera).coverage, distance < 10 ? 0.002 : 0.12) << distance;
+    EXPECT_GT(difference(whole, frame, camera).coverage, 0.1) << distance;
+    for (std::size_t i = 0; i < frame.depth.size(); ++i)
+      if (std::isfinite(frame.depth[i])) {
+        const Vec3 p{frame.position[3 * i], frame.position[3 * i + 1], frame.position[3 * i + 2]};
+        for (const auto& s : options.sections) EXPECT_GT(dot(s.normal, p) + s.offset, -0.01 * distance);
+      }
   }
 }
 
