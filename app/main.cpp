@@ -8,6 +8,7 @@
 #include "console.h"
 #include "exit_code.h"
 #include "output_file.h"
+#include "study/commands.h"
 
 namespace {
 
@@ -22,7 +23,8 @@ std::string usage_error(const CLI::App& app, int argc, char** argv, const CLI::P
       app.get_subcommands([&](const CLI::App* command) { return command->get_name() == first; });
   if (first[0] != '-' && commands.empty())
     return "'" + first +
-           "' is no command of this version (info, render, sample and compare are); see dupin --help";
+           "' is no command of this version (info, render, sample, compare, study and bench are); see dupin "
+           "--help";
   const bool named = first[0] != '-';
   return std::string(error.what()) + "; see dupin " + (named ? first + " " : "") + "--help";
 }
@@ -39,6 +41,8 @@ int run(int argc, char** argv) {
   dupin::app::add_render_command(app, chosen);
   dupin::app::add_sample_command(app, chosen);
   dupin::app::add_compare_command(app, chosen);
+  dupin::app::add_study_command(app, chosen);
+  dupin::app::add_bench_command(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -75,6 +75,7 @@ class PointsPrimitive : public RenderPrimitive {
       Result<MadePoints> made = make_points(input.model, sampling, options);
       if (!made.ok()) return made.status();
       points_ = std::move(made->scene);
+      stats.sampled = {made->before, points_.count(), made->sample_seconds, made->simplify_seconds};
     }
     stats.times.prepare = watch.lap();
     std::vector<std::vector<SkippedFace>> left_out;

@@ -42,6 +42,12 @@ struct CertifiedError {
 };
 CertifiedError certified_error(const DpScene& scene);
 
+/// Differential points that were sampled for this, before and after simplification.
+struct SampledPoints {
+  std::size_t before = 0, after = 0;
+  double sample_seconds = 0, simplify_seconds = 0;
+};
+
 struct RenderStats {
   std::vector<std::string> files;
   FaceReport faces;
@@ -49,6 +55,7 @@ struct RenderStats {
   std::uint64_t primitives = 0, bytes = 0, clips = 0;
   std::optional<CertifiedError> error;   ///< none for triangles
   std::optional<TreeLayerStats> points;  ///< of meshes' point trees, in the last frame
+  std::optional<SampledPoints> sampled;
   StageTimes times;
   int width = 0, height = 0;
   std::uint64_t covered_pixels = 0;

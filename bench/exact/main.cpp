@@ -10,7 +10,7 @@
 #include "../../app/output_file.h"
 #include "../../app/session.h"
 #include "../../app/view.h"
-#include "exact_picture.h"
+#include "../../exact/exact_picture.h"
 
 namespace {
 

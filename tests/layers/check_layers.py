@@ -19,10 +19,11 @@ LAYERS = {
     "render": ["core", "nurbs", "sampling", "simplify"],
 }
 LIBRARY = list(LAYERS)
-LAYERS["app"] = LIBRARY
+LAYERS["exact"] = LIBRARY
+LAYERS["app"] = LIBRARY + ["exact"]
 for above in ("bench", "examples", "integrations", "samples"):
-    LAYERS[above] = LIBRARY + ["app"]
-LAYERS["tests"] = LIBRARY + ["app", "bench"]
+    LAYERS[above] = LIBRARY + ["exact", "app"]
+LAYERS["tests"] = LIBRARY + ["exact", "app", "bench"]
 
 OCCT_ALLOWED = {"cad_import", "samples", "tests", "bench"}
 GL_ALLOWED = {"render", "examples", "integrations", "tests"}

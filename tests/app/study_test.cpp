@@ -1,0 +1,312 @@
+// What `dupin study` promises: a wrong file is told with its line before any work; a run that was killed goes
+// on to the same table; shards join to it; both sides of a comparison do the same work; a row's command draws
+// its picture.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "command.h"
+
+namespace dupin::test {
+namespace {
+
+using testing::HasSubstr;
+using Row = std::map<std::string, std::string>;
+
+/// No cell of these tables holds a comma.
+std::vector<Row> table(const std::string& path) {
+  std::istringstream lines(read_file(path));
+  std::vector<std::string> names;
+  std::vector<Row> rows;
+  for (std::string line, cell; std::getline(lines, line);) {
+    std::istringstream cells(line);
+    std::vector<std::string> values;
+    while (std::getline(cells, cell, ',')) values.push_back(cell);
+    if (names.empty()) {
+      names = values;
+      continue;
+    }
+    values.resize(names.size());
+    Row& row = rows.emplace_back();
+    for (std::size_t i = 0; i < names.size(); ++i) row[names[i]] = values[i];
+  }
+  return rows;
+}
+
+double number(const Row& row, const std::string& name) {
+  const auto at = row.find(name);
+  if (at == row.end() || at->second.empty()) {
+    ADD_FAILURE() << "no " << name;
+    return 0;
+  }
+  return std::stod(at->second);
+}
+
+std::string samples_line() {
+  return "models = [\"" + sample("bracket.step") + "\", \"" + sample("freeform.step") + "\"]\n";
+}
+
+/// 200 rows that take a few milliseconds each.
+std::string two_hundred_rows() {
+  return samples_line() +
+         "title = \"two hundred\"\ndraw = false\n"
+         "[[sweep]]\nprimitive = \"dp\"\nmethod = \"uniform\"\ngrid = [2, 3, 4, 5]\n"
+         "epsilon = [0.05, 0.04, 0.03, 0.02, 0.01]\ndelta = [1, 2, 3, 4, 5]\n";
+}
+
+TEST(Study, AWrongFileIsToldWithItsLineBeforeAnyWork) {
+  const struct {
+    const char* text;
+    int line;
+    const char* reason;
+  } cases[] = {
+      {"title = \"x\"\nmodel = [\"a\"]\n", 2, "unknown key 'model'"},
+      {"models = [\"nowhere.step\"]\n", 1, "'nowhere.step' is not there"},
+      {"models = \"${NO_SUCH_VARIABLE}/a.step\"\n", 1, "the environment has no NO_SUCH_VARIABLE"},
+      {"SAMPLES\nframes = \"five\"\n", 2, "frames must be a whole number"},
+      {"SAMPLES\nframes = -1\n", 2, "frames = -1 is not between 0 and"},
+      {"SAMPLES\nviews = [\"iso\", \"aslant\"]\n", 2, "no view is called 'aslant'"},
+      {"SAMPLES\nviews = [\"iso\", \"iso\"]\n", 2, "two views"},
+      {"SAMPLES\nviews = [{ zoom = 0 }]\n", 2, "zoom = 0"},
+      {"SAMPLES\nviews = [{ zom = 2 }]\n", 2, "unknown key 'zom'"},
+      {"SAMPLES\nsizes = [[1, 2, 3]]\n", 2, "a size is"},
+      {"SAMPLES\nsizes = [0]\n", 2, "a size = 0 is not between 1 and"},
+      {"SAMPLES\nreference = \"memory\"\n", 2, "reference must be"},
+      {"SAMPLES\nreference = \"triangles:2\"\n", 2, "deflection must be"},
+      {"SAMPLES\ndraw = 1\n", 2, "draw must be true or false"},
+      {"SAMPLES\n[[sweep]]\nprimitive = \"quadric\"\ntolerence = 1\n", 4, "is 'tolerance' meant?"},
+      {"SAMPLES\n[[sweep]]\nprimitive = \"quadric\"\n\ntolerance = [0.5, -1]\n", 5, "tolerance"},
+      {"SAMPLES\n[[sweep]]\nprimitive = \"triangle\"\n", 3, "triangle"},
+      {"SAMPLES\n[[sweep]]\nprimitive = \"triangles\"\ntolerance = 1\n", 4,
+       "means nothing to primitive triangles"},
+      {"SAMPLES\n[[sweep]]\nprimitive = \"quadric\"\nresolution = 5\n", 4, "no option of a sweep"},
+      {"SAMPLES\n[[sweep]]\nprimitive = \"quadric\"\nshading = \"zebra\"\n", 4,
+       "needs reference = \"triangles\""},
+      {"SAMPLES\n[[sweep]]\nprimitive = []\n", 3, "primitive has no values"},
+      {"SAMPLES\n[sweep]\nprimitive = \"quadric\"\n", 2, "two brackets"},
+      {"SAMPLES\n", 1, "no [[sweep]]"},
+      {"[[sweep]]\nprimitive = \"quadric\"\n", 1, "no models"},
+      {"title = \"never closed\nframes = 1\n", 1, ""},
+  };
+  const Folder folder;
+  for (const auto& c : cases) {
+    std::string text = c.text;
+    if (const std::size_t at = text.find("SAMPLES\n"); at != std::string::npos)
+      text.replace(at, 8, samples_line());
+    const std::string study = folder.write("wrong.toml", text);
+    const Outcome outcome = run_dupin({"study", study, "-o", folder.path("results")});
+    EXPECT_EQ(outcome.exit_code, 2) << text << outcome.err;
+    EXPECT_EQ(outcome.error_lines(), 1) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("wrong.toml:" + std::to_string(c.line) + ": ")) << text;
+    EXPECT_THAT(outcome.err, HasSubstr(c.reason)) << text;
+    EXPECT_THAT(folder.names(), testing::ElementsAre("wrong.toml")) << "something was done: " << text;
+  }
+  EXPECT_EQ(run_dupin({"study", folder.path("none.toml"), "-o", folder.path("results")}).exit_code, 2);
+}
+
+TEST(Study, RowsStandInTheFilesOrderTheLastKeyFastest) {
+  const Folder folder;
+  const std::string study =
+      folder.write("s.toml", samples_line() +
+                                 "views = [\"top\", { zoom = 4 }]\nsizes = [64, [32, 16]]\n"
+                                 "[[sweep]]\nprimitive = \"quadric\"\ntolerance = [1, 2]\n"
+                                 "[[sweep]]\ndeflection = [1e-2, 1e-3]\n"
+                                 "primitive = [\"triangles\", \"pop\"]\nviews = \"left\"\n");
+  const Outcome outcome = run_dupin({"study", study, "--list"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  std::istringstream lines(outcome.out);
+  std::vector<std::string> rows;
+  for (std::string line; std::getline(lines, line);) rows.push_back(line);
+  ASSERT_EQ(rows.size(), 2U * 2 * 2 * 2 + 2U * 2 * 4);
+  EXPECT_THAT(rows[1], HasSubstr("bracket.step\ttop\t64x64\t--primitive quadric --tolerance 2"));
+  EXPECT_THAT(rows[2], HasSubstr("bracket.step\ttop\t32x16\t--primitive quadric --tolerance 1"));
+  EXPECT_THAT(rows[4], HasSubstr("bracket.step\tiso*4\t64x64"));
+  EXPECT_THAT(rows[17], HasSubstr("bracket.step\tleft\t64x64\t--deflection 0.01 --primitive pop"));
+}
+
+TEST(Study, ShippedStudiesCanBeRun) {
+  const bool have_data = std::getenv("DUPIN_DATA") != nullptr;
+  int checked = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(DUPIN_STUDIES)) {
+    if (!have_data && read_file(entry.path()).find("${DUPIN_DATA}") != std::string::npos) continue;
+    const Outcome outcome = run_dupin({"study", entry.path().string(), "--list"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_GT(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1) << entry.path();
+    ++checked;
+  }
+  EXPECT_GE(checked, 2);
+}
+
+/// Runs a study and kills it when its journal has so many rows.
+void run_until(const std::string& study, const std::string& folder, std::size_t rows) {
+  const pid_t child = fork();
+  if (child == 0) {
+    execl(DUPIN_COMMAND, DUPIN_COMMAND, "study", study.c_str(), "-o", folder.c_str(), "--quiet", nullptr);
+    _exit(127);
+  }
+  const auto enough = [&] {
+    const std::string text = read_file(folder + "/rows.jsonl");
+    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) >= rows;
+  };
+  while (waitpid(child, nullptr, WNOHANG) == 0) {
+    if (enough()) kill(child, SIGKILL);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+}
+
+TEST(Study, OneThatWasKilledHalfWayGoesOnToTheSameTable) {
+  const Folder folder;
+  const std::string study = folder.write("s.toml", two_hundred_rows());
+  ASSERT_EQ(run_dupin({"study", study, "-o", folder.path("whole")}).exit_code, 0);
+  run_until(study, folder.path("killed"), 100);
+  const std::string journal = read_file(folder.path("killed/rows.jsonl"));
+  const auto before = std::count(journal.begin(), journal.end(), '\n');
+  EXPECT_GE(before, 100);
+  EXPECT_LT(before, 200) << "it was killed too late to show anything";
+  EXPECT_EQ(read_file(folder.path("killed/results.csv")), "");
+  std::ofstream(folder.path("killed/rows.jsonl"), std::ios::app) << "{\"key\": \"half a li";
+  ASSERT_EQ(run_dupin({"study", study, "-o", folder.path("killed")}).exit_code, 0);
+  const std::string whole = read_file(folder.path("whole/results.csv"));
+  EXPECT_EQ(table(folder.path("whole/results.csv")).size(), 200U);
+  EXPECT_EQ(read_file(folder.path("killed/results.csv")), whole);
+  const std::string resumed = read_file(folder.path("killed/rows.jsonl"));
+  EXPECT_EQ(std::count(resumed.begin(), resumed.end(), '\n'), 201) << "finished rows were measured again";
+}
+
+TEST(Study, TwoShardsJoinToWhatOneRunGives) {
+  const Folder folder;
+  const std::string study = folder.write("s.toml", two_hundred_rows());
+  ASSERT_EQ(run_dupin({"study", study, "-o", folder.path("whole")}).exit_code, 0);
+  ASSERT_EQ(run_dupin({"study", study, "-o", folder.path("a"), "--shard", "1/2"}).exit_code, 0);
+  const Outcome early = run_dupin({"study", study, "-o", folder.path("a"), "--merge"});
+  EXPECT_EQ(early.exit_code, 4);
+  EXPECT_THAT(early.err, HasSubstr("100 of 200 rows have not been measured"));
+  ASSERT_EQ(run_dupin({"study", study, "-o", folder.path("b"), "--shard", "2/2"}).exit_code, 0);
+  ASSERT_EQ(
+      run_dupin({"study", study, "-o", folder.path("a"), "--merge", "--from", folder.path("b")}).exit_code,
+      0);
+  EXPECT_EQ(read_file(folder.path("a/results.csv")), read_file(folder.path("whole/results.csv")));
+  for (const char* shard : {"0/2", "3/2", "1", "1/2x", "-1/2"})
+    EXPECT_EQ(run_dupin({"study", study, "-o", folder.path("c"), std::string("--shard=") + shard}).exit_code,
+              2);
+}
+
+TEST(Study, ADamagedModelCostsItsRowsAlone) {
+  const Folder folder;
+  folder.write("damaged.step", "ISO-10303-21;\nHEADER;\n");
+  const std::string study =
+      folder.write("s.toml", "models = [\"damaged.step\", \"" + sample("bracket.step") +
+                                 "\"]\ndraw = false\n[[sweep]]\nprimitive = [\"quadric\", \"dp\"]\n");
+  const Outcome outcome = run_dupin({"study", study, "-o", folder.path("r")});
+  EXPECT_EQ(outcome.exit_code, 4);
+  EXPECT_THAT(outcome.err, HasSubstr("2 of 4 rows failed"));
+  const std::string results = read_file(folder.path("r/results.csv"));
+  EXPECT_EQ(std::count(results.begin(), results.end(), '\n'), 5);
+  EXPECT_THAT(results, HasSubstr("\n0,damaged.step,iso,512,512,quadric,"));
+  EXPECT_THAT(results, HasSubstr("quadric,ok,"));
+}
+
+TEST(Study, BothSidesOfAComparisonDoTheSameWork) {
+  const Folder folder;
+  const std::string study = folder.write(
+      "s.toml",
+      samples_line() +
+          "views = [\"iso\", { view = \"left\", orthographic = true }, { view = \"top\", zoom = 4 }]\n"
+          "sizes = [[192, 128]]\nframes = 0\n"
+          "[[sweep]]\nprimitive = \"quadric\"\ncolor = \"#808080\"\n"
+          "[[sweep]]\nprimitive = \"triangles\"\ndeflection = 1e-4\ncolor = \"#808080\"\n");
+  ASSERT_EQ(run_dupin({"study", study, "-o", folder.path("r")}).exit_code, 0);
+  const std::vector<Row> rows = table(folder.path("r/results.csv"));
+  ASSERT_EQ(rows.size(), 12U);
+  for (const Row& row : rows) {
+    SCOPED_TRACE(row.at("row") + " " + row.at("model") + " " + row.at("view") + " " + row.at("primitive"));
+    const bool quadric = row.at("primitive") == "quadric";
+    EXPECT_EQ(row.at("status"), "ok");
+    EXPECT_NEAR(number(row, "covered_px"), number(row, "reference_covered_px"),
+                0.002 * number(row, "reference_covered_px"));
+    EXPECT_LE(number(row, "rmse_covered"), quadric ? 4 : 6);
+    EXPECT_EQ(number(row, "holes_px"), 0);
+    EXPECT_LE(number(row, "depth_p99_px"), quadric ? 0.5 : 4);
+    if (quadric) {
+      EXPECT_LE(number(row, "normal_p99_degrees"), number(row, "normal_bound_degrees"));
+    }
+  }
+}
+
+TEST(Study, OtherLooksAreComparedWithTriangles) {
+  const Folder folder;
+  const std::string study = folder.write(
+      "s.toml",
+      "models = \"" + sample("bracket.step") +
+          "\"\nsizes = [128]\nframes = 0\nreference = \"triangles:1e-5\"\n"
+          "[[sweep]]\nprimitive = \"quadric\"\nshading = [\"normal\", \"face\"]\nsamples = [1, 4]\n");
+  ASSERT_EQ(run_dupin({"study", study, "-o", folder.path("r")}).exit_code, 0);
+  for (const Row& row : table(folder.path("r/results.csv"))) {
+    EXPECT_LE(number(row, "rmse"), 5) << row.at("shading") << " " << row.at("samples");
+    EXPECT_GE(number(row, "ssim"), 0.98);
+  }
+}
+
+/// Of "dupin ARGUMENTS", words without blanks.
+std::vector<std::string> words(const std::string& command) {
+  std::istringstream in(command);
+  std::vector<std::string> list;
+  for (std::string word; in >> word;) list.push_back(word);
+  list.erase(list.begin());
+  return list;
+}
+
+TEST(Study, ARowsCommandDrawsItsPicture) {
+  const Folder folder;
+  const std::string study = folder.write(
+      "s.toml",
+      "models = \"" + sample("bracket.step") +
+          "\"\nviews = [\"iso\", { view = \"front\", zoom = 6, orthographic = true }]\nsizes = [[96, 64]]\n"
+          "frames = 0\npictures = true\n[[sweep]]\nprimitive = [\"quadric\", \"dp\"]\n");
+  ASSERT_EQ(run_dupin({"study", study, "-o", folder.path("r")}).exit_code, 0);
+  std::istringstream lines(read_file(folder.path("r/rows.jsonl")));
+  int rows = 0;
+  for (std::string line; std::getline(lines, line); ++rows) {
+    const auto row = nlohmann::json::parse(line);
+    std::vector<std::string> arguments = words(row["command"]);
+    *std::find(arguments.begin(), arguments.end(), "picture.png") = folder.path("again.png");
+    ASSERT_EQ(run_dupin(arguments).exit_code, 0) << row["command"];
+    const Outcome compared =
+        run_dupin({"compare", folder.path("r/" + row["pictures"]["picture"].get<std::string>()),
+                   folder.path("again.png"), "--json"});
+    EXPECT_LT(nlohmann::json::parse(compared.out)["rmse"].get<double>(), 0.5) << row["command"];
+  }
+  EXPECT_EQ(rows, 4);
+}
+
+TEST(Bench, MeasuresEveryPrimitiveOnACorpus) {
+  const Folder folder;
+  const Outcome outcome =
+      run_dupin({"bench", "--corpus", sample("bracket.step"), "-o", folder.path("r"), "--sizes", "96",
+                 "--frames", "2", "--prepares", "1", "--primitives", "quadric,triangles,pop"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::vector<Row> rows = table(folder.path("r/timed.csv"));
+  EXPECT_EQ(rows.size(), 3U * (5 + 4 + 4));
+  for (const Row& row : rows) {
+    EXPECT_EQ(row.at("status"), "ok");
+    EXPECT_GT(number(row, "frame_ms"), 0);
+    EXPECT_GT(number(row, "prepare_s"), 0);
+    EXPECT_GT(number(row, "bytes"), 0);
+    EXPECT_FALSE(row.at("commit").empty() && row.at("cpu").empty());
+  }
+}
+
+}  // namespace
+}  // namespace dupin::test
