@@ -68,7 +68,26 @@ Json to_json(const Vec3& v) {
   return {v.x, v.y, v.z};
 }
 
-Json to_json(const Model& model, const std::string& file) {
+Json tree_json(const PointTree& tree) {
+  const PointTreeInfo& info = tree.info();
+  return {{"kind", info.kind == PointTreeKind::pop ? "pop" : "qsplat"},
+          {"nodes", info.nodes},
+          {"leaves", info.leaves},
+          {"triangles", info.triangles},
+          {"bytes", tree.byte_count()},
+          {"position_error", info.position_error}};
+}
+
+std::string tree_text(const PointTree& tree) {
+  const PointTreeInfo& info = tree.info();
+  std::string text = std::to_string(info.nodes) + " nodes over ";
+  text += info.kind == PointTreeKind::pop ? std::to_string(info.triangles) + " triangles"
+                                          : std::to_string(info.leaves) + " points";
+  return text + ", " + std::to_string(tree.byte_count() / 1024) + " KiB";
+}
+
+Json to_json(const Loaded& loaded, const std::string& file) {
+  const Model& model = loaded.model;
   const Counts counts = count(model);
   const std::size_t faces = face_instance_count(model), skipped = skipped_count(model.skipped);
   Json json;
@@ -88,6 +107,7 @@ Json to_json(const Model& model, const std::string& file) {
                     {"vertex_colors", counts.vertex_colors},
                     {"polygon_colors", counts.polygon_colors},
                     {"normals", counts.normals}};
+  if (!loaded.trees.empty() && loaded.trees[0]) json["point_tree"] = tree_json(*loaded.trees[0]);
   const Box3 box = bounding_box(model);
   json["bounding_box"] =
       box.empty() ? Json(nullptr) : Json{{"min", to_json(box.lo)}, {"max", to_json(box.hi)}};
@@ -128,7 +148,8 @@ std::string mesh_text(const Counts& counts) {
          (counts.polygon_colors ? ", polygon colours" : "");
 }
 
-void print_table(const Model& model, const std::string& file) {
+void print_table(const Loaded& loaded, const std::string& file) {
+  const Model& model = loaded.model;
   const Counts counts = count(model);
   const std::size_t faces = face_instance_count(model), skipped = skipped_count(model.skipped);
   row("file", file);
@@ -139,6 +160,7 @@ void print_table(const Model& model, const std::string& file) {
   row("faces",
       std::to_string(faces + skipped) + (counts.surfaces.empty() ? "" : ": " + list(counts.surfaces)));
   if (counts.vertices) row("mesh", mesh_text(counts));
+  if (!loaded.trees.empty() && loaded.trees[0]) row("tree", tree_text(*loaded.trees[0]));
   row("colours", counts.colors.empty() ? "none" : list(counts.colors));
   if (const Box3 box = bounding_box(model); !box.empty()) {
     row("box", numbers("%.6g %.6g %.6g", box.lo) + " … " + numbers("%.6g %.6g %.6g", box.hi));
@@ -153,15 +175,16 @@ void print_table(const Model& model, const std::string& file) {
 
 int run(const InfoOptions& options) {
   Session session(options.common);
-  const Result<Loaded> loaded = load(session, {options.file});
+  LoadOptions how;
+  how.trees = true;
+  const Result<Loaded> loaded = load(session, {options.file}, how);
   if (!loaded.ok()) return session.fail(loaded.status());
   session.done();
   if (options.json)
-    std::printf(
-        "%s\n",
-        to_json(loaded->model, options.file).dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+    std::printf("%s\n",
+                to_json(*loaded, options.file).dump(2, ' ', false, Json::error_handler_t::replace).c_str());
   else
-    print_table(loaded->model, options.file);
+    print_table(*loaded, options.file);
   if (std::fflush(stdout) != 0)
     return session.fail({StatusCode::cannot_write, "standard output: cannot write"});
   return options.common.strict && !loaded->model.skipped.empty() ? kPartial : kDone;
@@ -172,7 +195,8 @@ int run(const InfoOptions& options) {
 void add_info_command(CLI::App& app, Command& chosen) {
   const auto options = std::make_shared<InfoOptions>();
   CLI::App* command = app.add_subcommand("info", "Say what a CAD or mesh file holds");
-  command->add_option("FILE", options->file, "STEP, IGES, BREP, FCStd, OBJ, PLY, STL or OFF")->required();
+  command->add_option("FILE", options->file, "STEP, IGES, BREP, FCStd, OBJ, PLY, STL, OFF or .dpt")
+      ->required();
   command->add_flag("--json", options->json, "As JSON, for programs");
   add_common_options(*command, options->common);
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });

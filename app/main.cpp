@@ -40,6 +40,7 @@ int run(int argc, char** argv) {
   dupin::app::add_info_command(app, chosen);
   dupin::app::add_render_command(app, chosen);
   dupin::app::add_sample_command(app, chosen);
+  dupin::app::add_tree_command(app, chosen);
   dupin::app::add_compare_command(app, chosen);
   dupin::app::add_study_command(app, chosen);
   dupin::app::add_bench_command(app, chosen);

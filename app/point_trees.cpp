@@ -1,6 +1,10 @@
 #include "point_trees.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include "../nurbs/join_meshes.h"
 
 namespace dupin::app {
 namespace {
@@ -14,22 +18,32 @@ void add_tessellation(const Part& part, PolygonMesh& mesh) {
   for (const Face& face : part.faces) mesh.groups.push_back({face.name, face.color});
 }
 
-/// Polygons of any size keep theirs; normals stay where both have them by vertex.
-void add_polygons(const PolygonMesh& from, PolygonMesh& mesh) {
-  const auto first_vertex = static_cast<std::uint32_t>(mesh.positions.size());
-  const auto first_group = static_cast<std::uint32_t>(mesh.groups.size());
-  for (std::uint32_t i = 0; i <= mesh.polygon_count() && mesh.starts.empty(); ++i)
-    if (3 * i <= mesh.corners.size()) mesh.starts.push_back(3 * i);
-  mesh.positions.insert(mesh.positions.end(), from.positions.begin(), from.positions.end());
-  mesh.normals.resize(mesh.positions.size());
-  for (std::size_t i = 0; i < from.polygon_count(); ++i) {
-    for (const std::uint32_t v : from.polygon(i)) mesh.corners.push_back(first_vertex + v);
-    mesh.starts.push_back(static_cast<std::uint32_t>(mesh.corners.size()));
-    mesh.polygon_groups.push_back(first_group + from.group_of(i));
+/// Of what has no colour, as the renderer has it (kPlainColor).
+constexpr Rgba8 kPlain{196, 198, 203, 255};
+
+/// Into model space; with the colours that a placement gives to what has none.
+void place_mesh(const Instance& instance, const Part& part, PolygonMesh& mesh) {
+  const Mat3 turn = cofactor(instance.to_world.linear);
+  const bool mirrored = determinant(instance.to_world.linear) < 0;
+  for (Vec3& p : mesh.positions) p = transform_point(instance.to_world, p);
+  for (auto& n : mesh.normals) {
+    const Vec3 turned = normalized(turn * Vec3{n[0], n[1], n[2]}) * (mirrored ? -1.0 : 1.0);
+    n = {static_cast<float>(turned.x), static_cast<float>(turned.y), static_cast<float>(turned.z)};
   }
-  if (from.groups.empty()) mesh.groups.emplace_back();
-  mesh.groups.insert(mesh.groups.end(), from.groups.begin(), from.groups.end());
-  simplify_layout(mesh);
+  for (std::size_t i = 0; mirrored && i < mesh.polygon_count(); ++i) {
+    const auto first = mesh.corners.begin() + static_cast<std::ptrdiff_t>(mesh.first_corner(i));
+    std::reverse(first, first + static_cast<std::ptrdiff_t>(mesh.corner_count(i)));
+  }
+  if (mesh.groups.empty()) mesh.groups.push_back({part.name, std::nullopt});
+  for (MeshGroup& group : mesh.groups)
+    if (!group.color) group.color = instance.color ? instance.color : part.color;
+}
+
+/// From the part to model space, as its first placement has it.
+double scale_of(const Model& model, std::size_t part) {
+  for (const Instance& instance : model.instances)
+    if (instance.part == part) return std::cbrt(std::abs(determinant(instance.to_world.linear)));
+  return 1;
 }
 
 }  // namespace
@@ -37,14 +51,42 @@ void add_polygons(const PolygonMesh& from, PolygonMesh& mesh) {
 PolygonMesh tessellation(const Part& part) {
   PolygonMesh mesh;
   add_tessellation(part, mesh);
-  if (part.polygons.polygon_count() > 0) add_polygons(part.polygons, mesh);
+  if (part.polygons.polygon_count() > 0) append(mesh, part.polygons, kPlain);
+  simplify_layout(mesh);
   return mesh;
 }
 
-Result<std::vector<PartTree>> make_point_trees(const Model& model, const TreeRequest& request) {
+PlacedMesh placed_mesh(const Model& model) {
+  PlacedMesh placed;
+  const auto whole = [](const Part& part) { return part.faces.empty() ? part.polygons : tessellation(part); };
+  if (model.parts.size() == 1 && model.instances.size() == 1) {
+    const Mat3& m = model.instances[0].to_world.linear;
+    placed.scale = scale_of(model, 0);
+    const Mat3 scaled{{placed.scale, 0, 0}, {0, placed.scale, 0}, {0, 0, placed.scale}};
+    if (m == scaled && model.instances[0].to_world.translation == Vec3{}) {
+      placed.mesh = whole(model.parts[0]);
+      return placed;
+    }
+  }
+  placed.scale = 1;
+  for (const Instance& instance : model.instances) {
+    PolygonMesh mesh = whole(model.parts[instance.part]);
+    place_mesh(instance, model.parts[instance.part], mesh);
+    append(placed.mesh, mesh, kPlain);
+  }
+  simplify_layout(placed.mesh);
+  return placed;
+}
+
+Result<std::vector<PartTree>> make_point_trees(const Model& model, const KnownTrees& known,
+                                               const TreeRequest& request) {
   std::vector<PartTree> trees(model.parts.size());
   for (std::size_t i = 0; i < trees.size(); ++i) {
     const Part& part = model.parts[i];
+    if (i < known.trees.size() && known.trees[i]) {
+      trees[i] = {known.trees[i], static_cast<std::uint32_t>(part.faces.size())};
+      continue;
+    }
     const bool tessellated = request.faces && !part.mesh.triangles.empty();
     PolygonMesh made;
     if (tessellated)
@@ -57,10 +99,13 @@ Result<std::vector<PartTree>> make_point_trees(const Model& model, const TreeReq
     options.kind = request.kind;
     options.source.name = part.name;
     options.source.unit_note = model.unit_note;
+    options.source.scale = scale_of(model, i);
     options.progress = request.progress;
     auto tree = build_point_tree(mesh, options);
     if (!tree.ok()) return {tree.status().code, model.source + ": " + tree.status().message};
     trees[i].tree = std::move(*tree);
+    if (i < known.files.size() && !known.files[i].empty())
+      (void)write_point_tree(*trees[i].tree, known.files[i]);
   }
   return trees;
 }

@@ -115,6 +115,12 @@ void add_tree_options(CLI::App& command, RenderOptions& options) {
       ->type_name("NAME")
       ->group(group);
   command
+      .add_option("--tree-cache", options.tree_folder,
+                  "A folder in which the trees of mesh files are kept, to be drawn at once the next time")
+      ->check(CLI::ExistingDirectory)
+      ->type_name("FOLDER")
+      ->group(group);
+  command
       .add_flag("--silhouette", options.trees.silhouette,
                 "Draw triangles, however small, near the silhouette")
       ->group(group);
@@ -209,7 +215,7 @@ Color RenderOptions::background_color() const {
 void add_render_options(CLI::App& command, RenderOptions& options) {
   command
       .add_option("FILE", options.files,
-                  "STEP, IGES, BREP, FCStd, OBJ, PLY, STL or OFF; several become one picture")
+                  "STEP, IGES, BREP, FCStd, OBJ, PLY, STL, OFF or .dpt; several become one picture")
       ->required();
   command.add_option("-o,--output", options.output, "The picture: .png or .exr")
       ->required()

@@ -33,6 +33,7 @@ struct RenderOptions {
   PointOptions points;
   std::string point_shading = "published";
   TreeLayerOptions trees;
+  std::string tree_folder;  ///< where meshes' trees are kept; empty: nowhere
 
   bool exr() const;
   /// The files are .dps.

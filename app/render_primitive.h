@@ -29,7 +29,7 @@ class RenderPrimitive {
   virtual std::string kind() const = 0;
   /// Reads the files. The reader's meshes are wanted where `deflection`, a part of the diagonal, is not 0.
   virtual Result<Loaded> load(Session& session, const RenderOptions& options) {
-    return app::load(session, options.files, deflection(options));
+    return app::load(session, options.files, {deflection(options)});
   }
   virtual double deflection(const RenderOptions&) const { return 0; }
   /// Makes what is drawn; fills in the statistics' faces, prepare time and error.

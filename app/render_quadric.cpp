@@ -16,6 +16,12 @@ constexpr double kRadians = 3.14159265358979323846 / 180;
 class QuadricPrimitive : public RenderPrimitive {
  public:
   std::string kind() const override { return "quadric"; }
+  Result<Loaded> load(Session& session, const RenderOptions& options) override {
+    Result<Loaded> loaded =
+        app::load(session, options.files, {0, true, PointTreeKind::pop, options.tree_folder});
+    if (loaded.ok()) known_ = {std::move(loaded->trees), std::move(loaded->tree_files)};
+    return loaded;
+  }
   SceneContent content() const override {
     SceneContent content{&dps_, {}};
     if (layers_) content.layers.push_back(layers_->layer());
@@ -43,13 +49,14 @@ class QuadricPrimitive : public RenderPrimitive {
 
  private:
   Status prepare_meshes(const PrimitiveInput& input) {
-    auto trees = make_point_trees(input.model, {PointTreeKind::pop, false, input.progress});
+    auto trees = make_point_trees(input.model, known_, {PointTreeKind::pop, false, input.progress});
     if (!trees.ok()) return trees.status();
     if (std::any_of(trees->begin(), trees->end(), [](const PartTree& t) { return t.tree != nullptr; }))
       layers_.emplace(std::move(*trees), input.options.trees);
     return {};
   }
   DpScene dps_;
+  KnownTrees known_;
   std::optional<TreeLayers> layers_;
 };
 

@@ -16,9 +16,16 @@ class TreesPrimitive : public RenderPrimitive {
   double deflection(const RenderOptions& options) const override { return options.deflection; }
   SceneContent content() const override { return {nullptr, {layers_->layer()}}; }
 
+  Result<Loaded> load(Session& session, const RenderOptions& options) override {
+    Result<Loaded> loaded =
+        app::load(session, options.files, {deflection(options), true, kind_, options.tree_folder});
+    if (loaded.ok()) known_ = {std::move(loaded->trees), std::move(loaded->tree_files)};
+    return loaded;
+  }
+
   Status prepare(const PrimitiveInput& input, RenderStats& stats) override {
     Stopwatch watch;
-    auto trees = make_point_trees(input.model, {kind_, true, input.progress});
+    auto trees = make_point_trees(input.model, known_, {kind_, true, input.progress});
     if (!trees.ok()) return trees.status();
     layers_.emplace(std::move(*trees), input.options.trees);
     stats.times.prepare = watch.lap() + input.model.mesh_seconds;
@@ -29,6 +36,7 @@ class TreesPrimitive : public RenderPrimitive {
 
  private:
   PointTreeKind kind_;
+  KnownTrees known_;
   std::optional<TreeLayers> layers_;
 };
 

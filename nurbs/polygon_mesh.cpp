@@ -71,7 +71,7 @@ std::size_t triangle_count(const PolygonMesh& mesh) {
 }
 
 std::size_t face_count(const PolygonMesh& mesh) {
-  return mesh.empty() ? 0 : std::max<std::size_t>(1, mesh.groups.size());
+  return mesh.empty() ? mesh.groups.size() : std::max<std::size_t>(1, mesh.groups.size());
 }
 
 Box3 bounding_box(const PolygonMesh& mesh) {

@@ -91,7 +91,8 @@ struct PolygonMesh {
 
 /// How many triangles the polygons make: n − 2 each.
 std::size_t triangle_count(const PolygonMesh& mesh);
-/// What a part that is a mesh has in place of faces: its groups; 1 for polygons or points without groups.
+/// What a part that is a mesh has in place of faces: its groups; 1 for polygons or points without groups. A
+/// mesh that has groups alone is kept elsewhere (in a tree's file).
 std::size_t face_count(const PolygonMesh& mesh);
 /// Of every vertex, used or not.
 Box3 bounding_box(const PolygonMesh& mesh);

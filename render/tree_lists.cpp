@@ -124,11 +124,16 @@ void TreeLists::number(std::vector<Pieces>& pieces) {
 TreeLists::Indices TreeLists::faces_of(const Scene::Impl& scene, const PlacedTree& p) const {
   const SceneInstance& instance = scene.instances[p.instance];
   const ScenePart& part = scene.parts[instance.part];
-  Indices faces(std::max<std::size_t>(1, p.cut.tree().groups().size()));
+  const std::vector<MeshGroup>& groups = p.cut.tree().groups();
+  const bool by_group =
+      std::any_of(groups.begin(), groups.end(), [](const MeshGroup& g) { return g.color.has_value(); });
+  Indices faces(std::max<std::size_t>(1, groups.size()));
   for (std::size_t group = 0; group < faces.size(); ++group) {
     const std::size_t face = trees_[p.tree].first_face + group;
     faces[group] = part.face_numbers[face];
-    if (instance.colors.of(face) != instance.file_colors.of(face)) faces[group] |= kOverride;
+    // A group without a colour has its placement's.
+    const bool placed = by_group && !groups[group].color;
+    if (placed || instance.colors.of(face) != instance.file_colors.of(face)) faces[group] |= kOverride;
   }
   return faces;
 }

@@ -58,6 +58,7 @@ class PointTree {
   const PointTreeInfo& info() const { return info_; }
   const TreeShape& shape() const { return shape_; }
   std::size_t byte_count() const;
+  /// Without colours where vertices or polygons had some: nodes and vertices have those.
   const std::vector<MeshGroup>& groups() const { return groups_; }
 
   /// Nodes [first, first + count) of the breadth-first order; empty, once and for all, where their page is
@@ -113,6 +114,9 @@ Result<std::shared_ptr<const PointTree>> build_point_tree(const PolygonMesh& mes
 Status write_point_tree(const PointTree& tree, const std::string& path);
 /// Maps the file.
 Result<std::shared_ptr<const PointTree>> open_point_tree(const std::string& path);
+/// The tree's triangles again, with their normals, colours and groups; of a tree without triangles its leaves
+/// as points. Vertices are where the tree's grid has them. Fails where the tree is damaged.
+Result<PolygonMesh> unpack_mesh(const PointTree& tree);
 /// Whether these are the first bytes of a .dpt file.
 bool is_point_tree(std::span<const char> head);
 

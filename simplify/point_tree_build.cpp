@@ -340,7 +340,11 @@ class Builder {
     content.triangles = pop() ? source_->size() : 0;
     content.nodes = nodes_, content.curvatures = curvatures_, content.leaf_groups = leaf_groups_;
     content.leaves = shape_.leaves();
-    content.groups = &mesh_.groups;
+    // Colours of groups say that vertices and polygons have none.
+    std::vector<MeshGroup> groups = mesh_.groups;
+    if (!mesh_.colors.empty() || !mesh_.polygon_colors.empty())
+      for (MeshGroup& group : groups) group.color.reset();
+    content.groups = &groups;
     content.blocks = &blocks_;
     content.leaf_triangles = [this](std::uint64_t rank) {
       return node_triangles(nodes_[shape_.leaf_node(rank)]);

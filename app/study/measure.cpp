@@ -218,7 +218,7 @@ class Measurer::Impl {
     if (const auto at = models_.find(deflection); at != models_.end()) return &at->second;
     Meshed made;
     for (int i = 0; i < (deflection > 0 ? study_.prepares : 1); ++i) {
-      Result<Loaded> loaded = app::load(session_, {model.path}, deflection);
+      Result<Loaded> loaded = app::load(session_, {model.path}, {deflection});
       if (!loaded.ok()) return loaded.status();
       made.mesh_seconds.push_back(loaded->model.mesh_seconds);
       made.loaded = std::move(*loaded);
