@@ -1,5 +1,6 @@
 #include "reader_process.h"
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
@@ -301,6 +302,17 @@ bool is_program(const std::string& path) {
   return !path.empty() && ::access(path.c_str(), X_OK) == 0;
 }
 
+/// Where the program lies, and the file that this code is in: a host's plug-in or library.
+std::vector<std::filesystem::path> own_folders() {
+  std::error_code error;
+  std::vector<std::filesystem::path> folders{
+      std::filesystem::read_symlink("/proc/self/exe", error).parent_path()};
+  Dl_info info;
+  if (::dladdr(reinterpret_cast<const void*>(&find_reader), &info) && info.dli_fname)
+    folders.push_back(std::filesystem::canonical(info.dli_fname, error).parent_path());
+  return folders;
+}
+
 }  // namespace
 
 Result<std::string> run_reader(const ReaderCommand& command) {
@@ -314,13 +326,12 @@ Result<std::string> find_reader(const std::string& asked) {
     if (is_program(named)) return named;
     return {StatusCode::unreadable, "the CAD reader " + named + " is missing or cannot be run"};
   }
-  std::error_code error;
-  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-  for (const std::filesystem::path& place :
-       {self / "dupin-reader", self / "../libexec/dupin/dupin-reader", self / "../cad_import/dupin-reader",
-        self / "../../cad_import/dupin-reader",  // a build tree's
-        std::filesystem::path(DUPIN_INSTALLED_READER)})
-    if (is_program(place)) return place.lexically_normal().string();
+  for (const std::filesystem::path& self : own_folders())
+    for (const char* place : {"dupin-reader", "../libexec/dupin/dupin-reader", "../cad_import/dupin-reader",
+                              "../../libexec/dupin/dupin-reader",
+                              "../../cad_import/dupin-reader"})  // a build tree's
+      if (is_program(self / place)) return (self / place).lexically_normal().string();
+  if (is_program(DUPIN_INSTALLED_READER)) return std::string(DUPIN_INSTALLED_READER);
   return {StatusCode::unreadable,
           "the CAD reader (dupin-reader) was not found; set DUPIN_READER or install it "
           "to " DUPIN_INSTALLED_READER};

@@ -17,7 +17,7 @@ struct SamplingOptions {
   /// camera.
   double tolerance = 0;
   /// With a camera, the tolerance of a cell is `tolerance_px` pixels at the cell's nearest visible point, and
-  /// cells that are out of the picture are not refined.
+  /// cells that are out of the picture are not refined. With a camera and a `tolerance` above 0 both hold.
   std::optional<Camera> camera;
   double tolerance_px = 0.5;
   /// Largest angle between a drawn and the true normal, in radians.

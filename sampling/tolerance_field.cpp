@@ -67,7 +67,9 @@ double ToleranceField::finest_pixel(const Box3& box) const {
 }
 
 double ToleranceField::at(const Box3& box) const {
-  return has_camera_ ? tolerance_px_ * finest_pixel(box) : fixed_;
+  if (!has_camera_) return fixed_;
+  const double seen = tolerance_px_ * finest_pixel(box);
+  return fixed_ > 0 ? std::min(fixed_, seen) : seen;
 }
 
 }  // namespace dupin

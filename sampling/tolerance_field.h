@@ -13,8 +13,8 @@ class ToleranceField {
  public:
   ToleranceField(const SamplingOptions& options, const Model& model, std::uint32_t part);
 
-  /// The largest deviation that stays within the tolerance for everything in the box; infinite where no
-  /// instance of it is in the picture.
+  /// The largest deviation that stays within the tolerances for everything in the box; infinite where no
+  /// instance of it is in the picture and only that counts.
   double at(const Box3& box) const;
   /// What `at` is in pixels; 0 without a camera.
   double tolerance_px() const { return has_camera_ ? tolerance_px_ : 0; }

@@ -17,6 +17,7 @@ LAYERS = {
     "sampling": ["core", "nurbs"],
     "simplify": ["core", "nurbs", "sampling"],
     "render": ["core", "nurbs", "sampling", "simplify"],
+    "host": ["core", "nurbs", "cad_import", "sampling", "simplify", "render"],
 }
 LIBRARY = list(LAYERS)
 LAYERS["exact"] = LIBRARY
