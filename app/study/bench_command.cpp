@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 
 struct BenchOptions {
   StudyRun run;
-  std::string corpus, reference = "exact";
+  std::string reference = "exact";
+  std::vector<std::string> corpus;
   std::vector<int> sizes{512, 1024};
   std::vector<std::string> primitives;
   int frames = 15, prepares = 3;
@@ -37,9 +38,9 @@ const std::vector<Knob>& knobs() {
         "tolerance = 0.1\nnormal-tolerance = 0.05"}},
       {"triangles", {"deflection = [1e-2, 1e-3, 1e-4, 1e-5]"}},
       {"dp", {"method = \"adaptive\"\nepsilon = [0.05, 0.012, 0.003]"}},
-      {"square", {"", "method = \"uniform\"\ngrid = [8, 32]"}},
-      {"rectangle", {"", "method = \"uniform\"\ngrid = [8, 32]"}},
-      {"ellipse", {"", "method = \"uniform\"\ngrid = [8, 32]"}},
+      {"square", {"method = \"uniform\"\ngrid = [4, 12, 36]"}},
+      {"rectangle", {"method = \"uniform\"\ngrid = [4, 12, 36]"}},
+      {"ellipse", {"method = \"uniform\"\ngrid = [4, 12, 36]"}},
       {"pop", {"deflection = [1e-3, 1e-4]\nsplat-size = [1, 3]"}},
       {"qsplat", {"deflection = [1e-3, 1e-4]\nsplat-size = [1, 3]"}},
       {"amg", {""}},
@@ -88,24 +89,30 @@ std::string study_text(const BenchOptions& options, const std::vector<std::strin
         std::count(options.primitives.begin(), options.primitives.end(), std::string(knob.primitive));
     if (!wanted || !in_this_version(knob.primitive)) continue;
     for (const char* step : knob.steps)
-      text += "\n[[sweep]]\nprimitive = " + quoted(knob.primitive) + "\n" + step + (*step ? "\n" : "");
+      text += "\n[[sweep]]\nprimitive = " + quoted(knob.primitive) + "\ncolor = \"#9aa3ad\"\n" + step +
+              (*step ? "\n" : "");
   }
   return text;
 }
 
 int run(BenchOptions options) {
   if (options.corpus.empty())
-    if (const char* data = std::getenv("DUPIN_DATA")) options.corpus = data;
+    if (const char* data = std::getenv("DUPIN_DATA")) options.corpus.emplace_back(data);
   if (options.corpus.empty())
     return fail(
         {StatusCode::invalid_argument, "no corpus: --corpus FOLDER, or DUPIN_DATA in the environment"});
+  std::vector<std::string> all;
   std::error_code error;
-  const std::string corpus = fs::absolute(options.corpus, error).string();
-  const auto files = fs::is_directory(corpus, error) ? chosen_files(model_files(corpus), options.models)
-                                                     : std::vector<std::string>{corpus};
-  if (files.empty()) return fail({StatusCode::unreadable, options.corpus + ": holds no models"});
+  for (const std::string& path : options.corpus) {
+    const fs::path corpus = fs::absolute(path, error);
+    const bool folder = fs::is_directory(corpus, error);
+    const auto found = folder ? model_files(corpus.string()) : std::vector<std::string>{corpus.string()};
+    if (found.empty()) return fail({StatusCode::unreadable, path + ": holds no models"});
+    all.insert(all.end(), found.begin(), found.end());
+  }
+  const std::vector<std::string> files = chosen_files(all, options.models);
   options.run.text = study_text(options, files);
-  const Result<Study> study = parse_study(options.run.text, "bench", corpus);
+  const Result<Study> study = parse_study(options.run.text, "bench", "");
   if (!study.ok()) return fail(study.status());
   return run_study(*study, options.run);
 }
@@ -116,8 +123,9 @@ void add_bench_command(CLI::App& app, Command& chosen) {
   const auto options = std::make_shared<BenchOptions>();
   CLI::App* command =
       app.add_subcommand("bench", "Measure every primitive's time, bytes and error on a corpus");
-  command->add_option("--corpus", options->corpus, "A folder of models, or one (default: $DUPIN_DATA)")
-      ->type_name("FOLDER");
+  command->add_option("--corpus", options->corpus, "Folders of models, or models (default: $DUPIN_DATA)")
+      ->delimiter(',')
+      ->type_name("FOLDER,...");
   command
       ->add_option("-o,--output", options->run.run.folder,
                    "The folder of results; a run that was ended goes on there")
@@ -143,6 +151,7 @@ void add_bench_command(CLI::App& app, Command& chosen) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->add_flag("--pictures", options->pictures, "Keep the pictures, with difference pictures");
+  command->add_flag("!--no-report", options->run.report, "No report.html");
   add_common_options(*command, options->run.run.common);
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }

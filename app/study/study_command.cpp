@@ -65,6 +65,7 @@ void add_study_command(CLI::App& app, Command& chosen) {
       ->check(CLI::ExistingDirectory)
       ->type_name("FOLDER");
   command->add_flag("--list", options->list, "Measure nothing; list the rows");
+  command->add_flag("!--no-report", options->run.report, "No report.html");
   add_common_options(*command, options->run.run.common);
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }

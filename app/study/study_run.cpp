@@ -6,6 +6,7 @@
 
 #include "../exit_code.h"
 #include "../output_file.h"
+#include "report_run.h"
 
 namespace dupin::app {
 namespace {
@@ -66,6 +67,9 @@ int run_study(const Study& study, const StudyRun& options) {
                  " rows failed; results.csv says why");
   session.note(std::to_string(lines.size()) + " rows in " + options.run.folder +
                "/results.csv and timed.csv");
+  if (options.report)
+    if (const std::string why = make_report(options.run.folder); !why.empty())
+      session.note("no report.html: " + why);
   return failed > 0 ? kPartial : kDone;
 }
 

@@ -15,6 +15,7 @@ struct StudyRun {
   bool merge = false;                 ///< measure nothing: join what is there
   std::vector<std::string> journals;  ///< further folders whose rows count
   std::string text;                   ///< of the study, kept with the results
+  bool report = true;                 ///< also make the page
 };
 
 /// Measures what is left, then writes the tables (not for one shard of several). The exit code.
