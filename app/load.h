@@ -33,6 +33,11 @@ struct LoadOptions {
 /// Reads the files and puts their models, each where it stands in its own space, into one.
 Result<Loaded> load(Session& session, const std::vector<std::string>& files, const LoadOptions& options = {});
 
+/// Turns every mesh into the limit surface of the cage that it is: exact faces; for a `mesh_deflection` above
+/// 0 with triangles of their own. `scheme`: "auto", "catmull-clark" or "loop". A model without meshes is
+/// unreadable.
+Status subdivide(Session& session, Model& model, const std::string& scheme, double mesh_deflection);
+
 /// Adds what `other` holds to `model`.
 void merge(Model& model, Model other);
 

@@ -54,6 +54,13 @@ Status RenderJob::load_model() {
   if (!loaded.ok()) return loaded.status();
   stats_.times.import = loaded->import_seconds;
   model_ = std::move(loaded->model);
+  if (!options_.subdivision.empty()) {
+    Stopwatch watch;
+    if (Status status = subdivide(session_, model_, options_.subdivision, primitive_->deflection(options_));
+        !status.ok())
+      return status;
+    stats_.times.import += watch.lap();
+  }
   if (face_instance_count(model_) == 0 && model_.skipped.empty())
     return {StatusCode::unreadable, model_.source + ": holds no faces"};
   note_loose_points();

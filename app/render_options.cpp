@@ -81,6 +81,12 @@ void add_quality_options(CLI::App& command, RenderOptions& options) {
       ->type_name("D")
       ->capture_default_str()
       ->group(group);
+  command
+      .add_flag("--subdivision{auto}", options.subdivision,
+                "Meshes are cages of subdivision surfaces, with their files' creases, corners and holes; "
+                "=catmull-clark or =loop instead of by their polygons")
+      ->check(CLI::IsMember({"auto", "catmull-clark", "loop"}))
+      ->group(group);
   add_point_options(command, options.points, false);
   command
       .add_option(

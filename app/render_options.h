@@ -34,6 +34,7 @@ struct RenderOptions {
   std::string point_shading = "published";
   TreeLayerOptions trees;
   std::string tree_folder;  ///< where meshes' trees are kept; empty: nowhere
+  std::string subdivision;  ///< empty: meshes are meshes; else the scheme of cages
 
   bool exr() const;
   /// The files are .dps.

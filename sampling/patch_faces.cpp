@@ -144,7 +144,7 @@ class PatchFace {
     dp.face = in_.face_index;
     dp.cell = uv;
     dp.bound = fit.bound + fitted_position_, dp.normal_bound = fit.normal_bound + fitted_normal_;
-    dp.sampled_bound = fitted_position_ > 0;
+    dp.sampled_bound = fitted_position_ > 0 && !std::holds_alternative<BsplineSurface>(surface_.geometry);
     dp.flipped = in_.face.reversed;
     if (make_footprint(uv, fit)) return emit_region(cell, uv, dp);
     return cell.arcs.empty() && emit_bordered(cell, fit);
@@ -376,8 +376,12 @@ class PatchFace {
 std::vector<FittedPatch> patches_of(const PatchFaceInput& in, PatchFaceResult& result) {
   const Surface& surface = in.part.surfaces[in.face.surface];
   std::vector<FittedPatch> patches;
+  // A spline that stands for the limit at an extraordinary vertex of a cage is itself off it.
+  const RecognizedSurface* stand_in = in.face.recognized.get();
+  if (stand_in && !std::holds_alternative<BsplineSurface>(stand_in->surface.geometry)) stand_in = nullptr;
   for (BezierPatch& patch : bezier_patches(surface, in.boundary.uv_box))
-    patches.push_back({std::move(patch), 0, 0});
+    patches.push_back(
+        {std::move(patch), stand_in ? stand_in->deviation : 0, stand_in ? stand_in->normal_deviation : 0});
   if (!patches.empty()) return patches;
   result.rational = false;
   patches = fitted_patches(surface, in.boundary.uv_box, in.tolerance, in.normal_tolerance);

@@ -43,7 +43,6 @@ void append(const PartDps& from, PartDps& to) {
              lines = static_cast<std::uint32_t>(to.lines.size());
   const auto arcs = static_cast<std::uint32_t>(to.arcs.size()),
              ellipses = static_cast<std::uint32_t>(to.ellipses.size());
-  to.dps.reserve(to.dps.size() + from.dps.size());
   for (QuadricDp dp : from.dps) {
     dp.first_plane += planes, dp.first_line += lines, dp.first_arc += arcs, dp.first_ellipse += ellipses;
     to.dps.push_back(dp);
