@@ -2,6 +2,10 @@
 #ifndef DUPIN_NURBS_BOUNDS_H
 #define DUPIN_NURBS_BOUNDS_H
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "bezier.h"
 
 namespace dupin {
@@ -20,6 +24,18 @@ struct NormalCone {
 /// Contains Su × Sv everywhere on the patch where it does not vanish: the cone of the Bernstein coefficients
 /// of w³ Su × Sv. Coefficients below 1e-13 of the largest are taken for zero (collapsed edges).
 NormalCone normal_cone(const BezierPatch& patch);
+
+/// Both principal curvatures, of the normal Su × Sv, lie in [lo, hi] everywhere on the patch.
+struct CurvatureBounds {
+  double lo = -std::numeric_limits<double>::infinity(), hi = std::numeric_limits<double>::infinity();
+  bool bounded() const { return std::isfinite(lo) && std::isfinite(hi); }
+  /// The largest of their absolute values.
+  double largest() const { return std::max(std::abs(lo), std::abs(hi)); }
+};
+/// From the Bernstein coefficients of both fundamental forms. Unbounded for patches that turn or stretch too
+/// much (halve them), that have a singular point, and for rational ones of a degree above kMaxTensorDegree
+/// / 4. As patches are halved, what the bounds say too much is halved too.
+CurvatureBounds curvature_bounds(const BezierPatch& patch);
 
 /// Whether some direction of the cone may point towards the viewer: false says that the patch, if its outward
 /// normal is the cone's, is turned away from every eye in the direction `to_eye` (unit) give or take `spread`

@@ -147,9 +147,8 @@ void copy_edges(const Far::TopologyLevel& from, bool last, CageLevel& to) {
                                  : std::array{kNoIndex, kNoIndex});
     if (last) continue;
     const auto children = from.GetEdgeChildEdges(e);
-    to.edge_children.push_back(children.size() == 2
-                                   ? std::array{index_of(children[0]), index_of(children[1])}
-                                   : std::array{kNoIndex, kNoIndex});
+    to.edge_children.push_back(children.size() == 2 ? std::array{index_of(children[0]), index_of(children[1])}
+                                                    : std::array{kNoIndex, kNoIndex});
   }
 }
 
@@ -213,7 +212,8 @@ Result<CageLevels> refine_cage(const PolygonMesh& cage, const RefineOptions& opt
   const Result<SubdivisionScheme> scheme = scheme_for(cage, options.scheme);
   if (!scheme.ok()) return scheme.status();
   Descriptor descriptor(cage);
-  if (descriptor.counts.empty()) return {StatusCode::unreadable, "every polygon of the cage uses a vertex twice"};
+  if (descriptor.counts.empty())
+    return {StatusCode::unreadable, "every polygon of the cage uses a vertex twice"};
   catch_errors();
   const auto refiner = descriptor.refiner(cage, *scheme);
   if (!refiner) return {StatusCode::unreadable, first_line(t_error)};

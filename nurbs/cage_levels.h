@@ -17,7 +17,8 @@ inline constexpr std::uint32_t kNoIndex = 0xffffffffu;
 /// How a vertex moves at its level.
 enum class VertexRule : std::uint8_t { smooth, dart, crease, corner };
 
-/// The cage after some refinement. Adaptive refinement leaves out what is regular, but for what its neighbours need.
+/// The cage after some refinement. Adaptive refinement leaves out what is regular, but for what its
+/// neighbours need.
 struct CageLevel {
   std::vector<Vec3> points;
   std::vector<VertexRule> rules;

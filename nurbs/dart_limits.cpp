@@ -1,5 +1,6 @@
-// The end of a crease within a surface. OpenSubdiv's limit masks take such a vertex for a smooth one, which is off by what
-// the crease pulls at its ring; here its ring is subdivided until it has shrunk into the limit.
+// The end of a crease within a surface. OpenSubdiv's limit masks take such a vertex for a smooth one, which
+// is off by what the crease pulls at its ring; here its ring is subdivided until it has shrunk into the
+// limit.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -9,14 +10,15 @@
 namespace dupin {
 namespace {
 
-/// A dart vertex and its neighbours against the clock: edge points from the crease's on, and for quads the face points
-/// between them.
+/// A dart vertex and its neighbours against the clock: edge points from the crease's on, and for quads the
+/// face points between them.
 struct Ring {
   Vec3 centre;
   std::vector<Vec3> edges, faces;
 };
 
-std::optional<Ring> ring_of(const CageLevel& level, std::uint32_t first_face, std::uint32_t vertex, bool triangles) {
+std::optional<Ring> ring_of(const CageLevel& level, std::uint32_t first_face, std::uint32_t vertex,
+                            bool triangles) {
   // From any face back to the crease, then around to it again.
   const auto corner = [&](std::uint32_t face) {
     const auto vertices = level.vertices(face);
@@ -64,7 +66,8 @@ Ring subdivided(const Ring& r) {
     const double c = 3.0 / 8 + std::cos(2 * 3.14159265358979323846 / n) / 4, beta = (5.0 / 8 - c * c) / n;
     out.centre = r.centre * (1 - n * beta) + sum(r.edges) * beta;
   } else {
-    out.centre = r.centre * (1 - 7 / (4 * n)) + sum(r.edges) * (3 / (2 * n * n)) + sum(r.faces) * (1 / (4 * n * n));
+    out.centre =
+        r.centre * (1 - 7 / (4 * n)) + sum(r.edges) * (3 / (2 * n * n)) + sum(r.faces) * (1 / (4 * n * n));
   }
   out.edges[0] = (r.centre + r.edges[0]) * 0.5;
   for (std::size_t i = 0; i < count; ++i) {
@@ -72,9 +75,9 @@ Ring subdivided(const Ring& r) {
     if (!triangles) out.faces[i] = (r.centre + r.edges[i] + r.faces[i] + r.edges[next]) * 0.25;
     if (i == 0) continue;
     const Vec3 sides = r.edges[next] + r.edges[before];
-    out.edges[i] = triangles ? (r.centre + r.edges[i]) * (3.0 / 8) + sides * (1.0 / 8)
-                             : (r.centre + r.edges[i]) * (3.0 / 8) +
-                                   (sides + r.faces[i] + r.faces[before]) * (1.0 / 16);
+    out.edges[i] =
+        triangles ? (r.centre + r.edges[i]) * (3.0 / 8) + sides * (1.0 / 8)
+                  : (r.centre + r.edges[i]) * (3.0 / 8) + (sides + r.faces[i] + r.faces[before]) * (1.0 / 16);
   }
   return out;
 }
@@ -83,8 +86,8 @@ struct DartLimit {
   Vec3 point, tangent_u, tangent_v;
 };
 
-/// Around the centre the ring shrinks to nothing, and is blown up again so that its shape, an affine image of one that is
-/// flat, comes out.
+/// Around the centre the ring shrinks to nothing, and is blown up again so that its shape, an affine image of
+/// one that is flat, comes out.
 DartLimit limit_of(Ring ring) {
   constexpr int kSteps = 150;
   Vec3 limit = ring.centre;
@@ -104,7 +107,8 @@ DartLimit limit_of(Ring ring) {
     ring = next;
   }
   Vec3 n;
-  for (std::size_t i = 0; i < ring.edges.size(); ++i) n += cross(ring.edges[i], ring.edges[(i + 1) % ring.edges.size()]);
+  for (std::size_t i = 0; i < ring.edges.size(); ++i)
+    n += cross(ring.edges[i], ring.edges[(i + 1) % ring.edges.size()]);
   const Vec3 u = ring.edges[0];
   return {limit, u, length(n) > 0 ? cross(normalized(n), u) : Vec3{}};
 }
@@ -122,7 +126,8 @@ void correct_dart_limits(CageLevels& cage) {
       const auto ring = ring_of(level, f, v, triangles);
       if (!ring) continue;
       const DartLimit limit = limit_of(*ring);
-      cage.limits[v] = limit.point, cage.tangents_u[v] = limit.tangent_u, cage.tangents_v[v] = limit.tangent_v;
+      cage.limits[v] = limit.point, cage.tangents_u[v] = limit.tangent_u,
+      cage.tangents_v[v] = limit.tangent_v;
     }
 }
 

@@ -109,7 +109,8 @@ LimitPatch from_bicubic_spline(const std::array<Vec3, 16>& control) {
     rows[r] = to_bezier(control[4 * r], control[4 * r + 1], control[4 * r + 2], control[4 * r + 3]);
   LimitPatch patch;
   for (std::size_t i = 0; i < 4; ++i)
-    for (const Vec3& pole : to_bezier(rows[0][i], rows[1][i], rows[2][i], rows[3][i])) patch.poles.push_back(pole);
+    for (const Vec3& pole : to_bezier(rows[0][i], rows[1][i], rows[2][i], rows[3][i]))
+      patch.poles.push_back(pole);
   return patch;
 }
 

@@ -1,6 +1,7 @@
 #include "limit_caps.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -13,7 +14,8 @@
 namespace dupin {
 namespace {
 
-/// A square of a node's local parameters; for a triangle turned by half a turn the corner (0,0) is the upper right one.
+/// A square of a node's local parameters; for a triangle turned by half a turn the corner (0,0) is the upper
+/// right one.
 struct Square {
   Vec2 origin;
   double size = 1;
@@ -56,8 +58,9 @@ std::vector<Vec3> differences(const std::vector<Vec4>& poles, int degree, bool a
   const std::size_t n = static_cast<std::size_t>(degree) + 1;
   for (std::size_t i = 0; i + (along_u ? 1 : 0) < n; ++i)
     for (std::size_t j = 0; j + (along_u ? 0 : 1) < n; ++j)
-      out.push_back((xyz(poles[(i + (along_u ? 1 : 0)) * n + j + (along_u ? 0 : 1)]) - xyz(poles[i * n + j])) *
-                    static_cast<double>(degree));
+      out.push_back(
+          (xyz(poles[(i + (along_u ? 1 : 0)) * n + j + (along_u ? 0 : 1)]) - xyz(poles[i * n + j])) *
+          static_cast<double>(degree));
   return out;
 }
 
@@ -73,7 +76,7 @@ double least_normal(const BezierPatch& patch) {
     for (int j = 0; j <= n[0].q; ++j) {
       const Vec3 scaled{n[0].at(i, j), n[1].at(i, j), n[2].at(i, j)};
       least = std::min(least, dot(scaled, cone.axis) / (binomials(n[0].p)[static_cast<std::size_t>(i)] *
-                                                         binomials(n[0].q)[static_cast<std::size_t>(j)]));
+                                                        binomials(n[0].q)[static_cast<std::size_t>(j)]));
     }
   return std::max(least, 0.0);
 }
@@ -83,39 +86,35 @@ double least_normal(const BezierPatch& patch) {
 double normal_difference(const BezierPatch& s, const BezierPatch& t) {
   const auto su = differences(s.poles, s.degree_u, true), sv = differences(s.poles, s.degree_v, false),
              tu = differences(t.poles, t.degree_u, true), tv = differences(t.poles, t.degree_v, false);
-  const double off = largest_difference(su, tu) * largest_length(sv) + largest_length(tu) * largest_difference(sv, tv);
+  const double off =
+      largest_difference(su, tu) * largest_length(sv) + largest_length(tu) * largest_difference(sv, tv);
   const double least = least_normal(s);
   return off < least ? std::asin(off / least) : std::numbers::pi;
 }
 
-/// The control points that the limit over a face depends on: it lies in their hull.
-void add_hull(const CageLevel& level, std::uint32_t face, Box3& box) {
-  for (std::uint32_t v : level.vertices(face)) box.add(level.points[v]);
-  // Two rounds of neighbours across edges reach every face around its corners but where many meet.
-  std::vector<std::uint32_t> faces{face};
-  for (std::size_t i = 0; i < faces.size(); ++i)
-    for (std::uint32_t e : level.edges(faces[i]))
-      for (std::uint32_t f : level.edge_faces[e]) {
-        if (f == kNoIndex || std::find(faces.begin(), faces.end(), f) != faces.end()) continue;
-        const auto vertices = level.vertices(f), own = level.vertices(face);
-        const bool touches = std::any_of(vertices.begin(), vertices.end(), [&](std::uint32_t v) {
-          return std::find(own.begin(), own.end(), v) != own.end();
-        });
-        if (!touches) continue;
-        for (std::uint32_t v : vertices) box.add(level.points[v]);
-        faces.push_back(f);
-      }
+/// By vertex, the box of all faces around it. The limit over a face lies in the hull of the faces around its
+/// corners.
+std::vector<Box3> boxes_around(const CageLevel& level) {
+  std::vector<Box3> boxes(level.points.size());
+  for (std::uint32_t f = 0; f < level.face_count(); ++f) {
+    Box3 face;
+    for (std::uint32_t v : level.vertices(f)) face.add(level.points[v]);
+    for (std::uint32_t v : level.vertices(f)) boxes[v].add(face.lo), boxes[v].add(face.hi);
+  }
+  return boxes;
 }
 
 class CapCheck {
  public:
-  CapCheck(const LimitForest& forest, LimitCap& cap) : forest_(forest), cap_(cap), patch_(to_bezier(cap.patch)) {}
+  CapCheck(const LimitForest& forest, const CapHulls& hulls, LimitCap& cap)
+      : forest_(forest), hulls_(hulls), cap_(cap), patch_(to_bezier(cap.patch)) {}
 
   void visit(const LimitNode& node, const Square& square) {
     if (node.regular()) return compare(node, square);
     if (node.leaf()) return enclose(node, square);
     for (std::uint32_t i = 0; i < node.children; ++i)
-      visit(forest_.nodes[node.first_child + i], child_square(forest_.corners(), square, static_cast<int>(i)));
+      visit(forest_.nodes[node.first_child + i],
+            child_square(forest_.corners(), square, static_cast<int>(i)));
   }
 
  private:
@@ -129,12 +128,16 @@ class CapCheck {
   }
   void enclose(const LimitNode& node, const Square& square) {
     Box3 box;
-    add_hull(forest_.cage.levels[node.level], node.face, box);
+    for (std::uint32_t v : forest_.cage.levels[node.level].vertices(node.face)) {
+      const Box3 around = hulls_.around(node.level, v);
+      box.add(around.lo), box.add(around.hi);
+    }
     for (const Vec4& pole : piece_of(patch_, square).poles) box.add(xyz(pole));
     cap_.deviation = std::max(cap_.deviation, box.diagonal());
   }
 
   const LimitForest& forest_;
+  const CapHulls& hulls_;
   LimitCap& cap_;
   BezierPatch patch_;
 };
@@ -162,28 +165,45 @@ BezierPatch to_bezier(const LimitPatch& patch) {
   return out;
 }
 
-LimitCap make_cap(const LimitForest& forest, std::uint32_t node) {
+CapHulls::CapHulls(const LimitForest& forest) : levels_(forest.cage.levels.size()) {
+  for (const LimitNode& node : forest.nodes)
+    if (node.leaf() && !node.regular() && levels_[node.level].empty())
+      levels_[node.level] = boxes_around(forest.cage.levels[node.level]);
+}
+
+LimitCap make_cap(const LimitForest& forest, const CapHulls& hulls, std::uint32_t node) {
   LimitCap cap;
   cap.node = node;
   cap.patch = interpolant(forest, forest.nodes[node]);
   Box3 box;
   for (const Vec3& pole : cap.patch.poles) box.add(pole);
   cap.size = box.diagonal();
-  CapCheck(forest, cap).visit(forest.nodes[node], {});
+  CapCheck(forest, hulls, cap).visit(forest.nodes[node], {});
   return cap;
 }
 
-LimitCover make_cover(const LimitForest& forest, double diagonal, const LimitPartOptions& options) {
+LimitCover make_cover(const LimitForest& forest, double diagonal, const LimitPartOptions& options,
+                      int deepest) {
   LimitCover cover;
+  const CapHulls hulls(forest);
   const int last = static_cast<int>(forest.cage.levels.size()) - 1;
   int depth = 1;
   for (;; ++depth) {
     const auto nodes = irregular_nodes(forest, depth);
+    // Only what has two more levels can be interpolated: the last chance, where something is irregular for
+    // ever.
+    const bool final = depth >= deepest || (depth >= last - 2 && !hulls.empty());
+    std::atomic<bool> good{true};
     cover.caps.assign(nodes.size(), {});
-    parallel_for(nodes.size(), [&](std::size_t i) { cover.caps[i] = make_cap(forest, nodes[i]); }, 16);
-    const bool good = std::all_of(cover.caps.begin(), cover.caps.end(),
-                                  [&](const LimitCap& cap) { return good_enough(cap, diagonal, options); });
-    if (good || depth >= last - 2) break;
+    parallel_for(
+        nodes.size(),
+        [&](std::size_t i) {
+          if (!good && !final) return;
+          cover.caps[i] = make_cap(forest, hulls, nodes[i]);
+          if (!good_enough(cover.caps[i], diagonal, options)) good = false;
+        },
+        16);
+    if (good || final) break;
   }
   for (std::uint32_t i = 0; i < forest.nodes.size(); ++i)
     if (forest.nodes[i].regular() && forest.nodes[i].level <= depth) cover.regular.push_back(i);

@@ -60,7 +60,8 @@ class ForestBuilder {
       child.polygon = node.polygon;
       child.level = static_cast<std::uint8_t>(node.level + 1);
       child.flipped = node.flipped != middle;
-      child.rotation = static_cast<std::uint8_t>(middle ? middle_rotation(level, node) : rotation_of(node, child, k, whole));
+      child.rotation = static_cast<std::uint8_t>(middle ? middle_rotation(level, node)
+                                                        : rotation_of(node, child, k, whole));
       child.origin = whole ? origin_of(node, k) : Vec2{static_cast<double>(k), 0};
       forest_.nodes.push_back(child);
     }
@@ -73,11 +74,13 @@ class ForestBuilder {
     const std::size_t corner = static_cast<std::size_t>(k + (whole ? parent.rotation : 0)) % parents.size();
     // The edges that start and end at the parent's corner have children that meet in the child's corner.
     const auto& starts = above.edge_children[above.edges(parent.face)[corner]];
-    const auto& ends = above.edge_children[above.edges(parent.face)[(corner + parents.size() - 1) % parents.size()]];
+    const auto& ends =
+        above.edge_children[above.edges(parent.face)[(corner + parents.size() - 1) % parents.size()]];
     const auto edges = level.edges(child.face);
     const int n = static_cast<int>(edges.size());
     for (int i = 0; i < n; ++i) {
-      const std::uint32_t out = edges[static_cast<std::size_t>(i)], in = edges[static_cast<std::size_t>((i + n - 1) % n)];
+      const std::uint32_t out = edges[static_cast<std::size_t>(i)],
+                          in = edges[static_cast<std::size_t>((i + n - 1) % n)];
       if ((out == starts[0] || out == starts[1]) && (in == ends[0] || in == ends[1])) {
         const int local = whole ? k : 0;
         return ((i - local) % n + n) % n;
@@ -86,12 +89,14 @@ class ForestBuilder {
     return 0;
   }
 
-  /// The middle triangle's first corner lies on the side opposite the parent's first: shared by the children at 1 and 2.
+  /// The middle triangle's first corner lies on the side opposite the parent's first: shared by the children
+  /// at 1 and 2.
   int middle_rotation(const CageLevel& above, const LimitNode& parent) const {
     const std::uint32_t middle = above.children(parent.face)[3];
     const CageLevel& level = forest_.cage.levels[parent.level + 1];
     const auto vertices = level.vertices(middle);
-    const std::uint32_t opposite = above.edges(parent.face)[static_cast<std::size_t>((1 + parent.rotation) % 3)];
+    const std::uint32_t opposite =
+        above.edges(parent.face)[static_cast<std::size_t>((1 + parent.rotation) % 3)];
     const auto& halves = above.edge_children[opposite];
     if (halves[0] == kNoIndex) return 0;
     const auto &a = level.edge_vertices[halves[0]], &b = level.edge_vertices[halves[1]];
@@ -146,7 +151,8 @@ int child_at(int corners, Vec2& local) {
 
 const LimitNode& leaf_at(const LimitForest& forest, const LimitNode& node, Vec2& local) {
   const LimitNode* at = &node;
-  while (!at->leaf()) at = &forest.nodes[at->first_child + static_cast<std::uint32_t>(child_at(forest.corners(), local))];
+  while (!at->leaf())
+    at = &forest.nodes[at->first_child + static_cast<std::uint32_t>(child_at(forest.corners(), local))];
   return *at;
 }
 
@@ -155,7 +161,8 @@ namespace {
 /// The last node at a local corner, and the corner's place in it.
 const LimitNode& last_at_corner(const LimitForest& forest, const LimitNode& node, int& corner) {
   const LimitNode* at = &node;
-  if (!at->leaf() && static_cast<int>(forest.cage.levels[at->level].vertices(at->face).size()) != forest.corners())
+  if (!at->leaf() &&
+      static_cast<int>(forest.cage.levels[at->level].vertices(at->face).size()) != forest.corners())
     at = &forest.nodes[at->first_child + static_cast<std::uint32_t>(corner)], corner = 0;
   while (!at->leaf()) at = &forest.nodes[at->first_child + static_cast<std::uint32_t>(corner)];
   return *at;
@@ -170,9 +177,11 @@ Vec2 corner_parameters(int corners, int corner) {
 
 Vec3 corner_limit(const LimitForest& forest, const LimitNode& node, int corner) {
   const LimitNode& last = last_at_corner(forest, node, corner);
-  if (last.regular()) return point_of(forest.patches[last.patch], corner_parameters(forest.corners(), corner));
+  if (last.regular())
+    return point_of(forest.patches[last.patch], corner_parameters(forest.corners(), corner));
   const std::uint32_t vertex = forest.vertex(last, corner);
-  // A face that OpenSubdiv did not refine further has no limits of its own: only with fewer levels than it has rules.
+  // A face that OpenSubdiv did not refine further has no limits of its own: only with fewer levels than it
+  // has rules.
   if (last.level + 1u != forest.cage.levels.size()) return forest.cage.levels[last.level].points[vertex];
   return forest.cage.limits[vertex];
 }
@@ -202,10 +211,12 @@ void evaluate_patch(const LimitPatch& patch, Vec2 local, int order, Vec3* jets) 
       double factor = 1;
       for (std::size_t r = 0; r < a; ++r, factor *= static_cast<double>(n - r + 1))
         for (std::size_t i = 0; i + r < n; ++i)
-          for (std::size_t j = 0; j <= n; ++j) d[i * (n + 1) + j] = d[(i + 1) * (n + 1) + j] - d[i * (n + 1) + j];
+          for (std::size_t j = 0; j <= n; ++j)
+            d[i * (n + 1) + j] = d[(i + 1) * (n + 1) + j] - d[i * (n + 1) + j];
       for (std::size_t r = 0; r < bb; ++r, factor *= static_cast<double>(n - r + 1))
         for (std::size_t i = 0; i + a <= n; ++i)
-          for (std::size_t j = 0; j + r < n; ++j) d[i * (n + 1) + j] = d[i * (n + 1) + j + 1] - d[i * (n + 1) + j];
+          for (std::size_t j = 0; j + r < n; ++j)
+            d[i * (n + 1) + j] = d[i * (n + 1) + j + 1] - d[i * (n + 1) + j];
       // De Casteljau.
       for (std::size_t m = n - a; m > 0; --m)
         for (std::size_t i = 0; i < m; ++i)
@@ -231,8 +242,12 @@ Vec3 quarter_point(const LimitForest& forest, const LimitNode& node, Vec2 local)
   for (int level = 0; level < 2 && !at->leaf(); ++level)
     at = &forest.nodes[at->first_child + static_cast<std::uint32_t>(child_at(forest.corners(), local))];
   if (at->regular()) return point_of(forest.patches[at->patch], local);
-  const int corner = forest.corners() == 3 ? (local.x > 0.5 ? 1 : local.y > 0.5 ? 2 : 0)
-                                           : (local.y > 0.5 ? (local.x > 0.5 ? 2 : 3) : local.x > 0.5 ? 1 : 0);
+  const int corner = forest.corners() == 3 ? (local.x > 0.5   ? 1
+                                              : local.y > 0.5 ? 2
+                                                              : 0)
+                                           : (local.y > 0.5   ? (local.x > 0.5 ? 2 : 3)
+                                              : local.x > 0.5 ? 1
+                                                              : 0);
   return corner_limit(forest, *at, corner);
 }
 
@@ -249,7 +264,8 @@ LimitPatch interpolant(const LimitForest& forest, const LimitNode& node) {
   std::array<Vec3, 25> values{};
   for (std::size_t i = 0; i <= 4; ++i)
     for (std::size_t j = 0; i + j <= 4; ++j)
-      values[5 * i + j] = quarter_point(forest, node, {static_cast<double>(i) / 4, static_cast<double>(j) / 4});
+      values[5 * i + j] =
+          quarter_point(forest, node, {static_cast<double>(i) / 4, static_cast<double>(j) / 4});
   return quartic_through(values);
 }
 

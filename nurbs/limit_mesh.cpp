@@ -9,7 +9,8 @@ namespace {
 
 /// Faces of one level with the node of the forest that each lies in.
 std::vector<std::uint32_t> nodes_of_children(const LimitForest& forest, const CageLevel& level,
-                                             const std::vector<std::uint32_t>& nodes, std::size_t next_count) {
+                                             const std::vector<std::uint32_t>& nodes,
+                                             std::size_t next_count) {
   std::vector<std::uint32_t> out(next_count, kNoIndex);
   for (std::uint32_t f = 0; f < level.face_count(); ++f) {
     if (nodes[f] == kNoIndex) continue;
@@ -25,15 +26,6 @@ std::vector<std::uint32_t> nodes_of_children(const LimitForest& forest, const Ca
   return out;
 }
 
-int levels_of(const PolygonMesh& cage, int segments, std::size_t most_triangles) {
-  const double per_face = 2 * static_cast<double>(std::max<std::size_t>(cage.polygon_count(), 1));
-  int level = 1;
-  while (level < 10 && (1 << level) < segments &&
-         per_face * std::ldexp(1.0, 2 * (level + 1)) <= static_cast<double>(most_triangles))
-    ++level;
-  return level;
-}
-
 void add_polygon(const CageLevel& level, std::uint32_t face, std::uint32_t of, TriangleMesh& mesh) {
   const auto vertices = level.vertices(face);
   for (std::size_t i = 2; i < vertices.size(); ++i) {
@@ -46,8 +38,8 @@ std::array<float, 3> to_float(const Vec3& p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
-/// Across a crease each side has its normal: vertices there are doubled, one for each smooth fan. They are given the
-/// area-weighted normal of their side's triangles.
+/// Across a crease each side has its normal: vertices there are doubled, one for each smooth fan. They are
+/// given the area-weighted normal of their side's triangles.
 class CreaseNormals {
  public:
   CreaseNormals(const CageLevel& level, TriangleMesh& mesh) : level_(level), mesh_(mesh) {}
@@ -76,8 +68,8 @@ class CreaseNormals {
     return cross(point(mesh_.triangles[3 * t + 1]) - a, point(mesh_.triangles[3 * t + 2]) - a);
   }
 
-  /// Triangles of one fan share edges at the vertex that are no creases: found by their normals' agreement, which a fine
-  /// mesh has.
+  /// Triangles of one fan share edges at the vertex that are no creases: found by their normals' agreement,
+  /// which a fine mesh has.
   void split_vertex(std::uint32_t v, std::vector<std::uint32_t> triangles) {
     constexpr double kOneFan = 0.9;
     bool first = true;
@@ -108,10 +100,18 @@ class CreaseNormals {
 
 }  // namespace
 
+int tessellation_levels(const PolygonMesh& cage, int segments, std::size_t most_triangles) {
+  const double per_face = 2 * static_cast<double>(std::max<std::size_t>(cage.polygon_count(), 1));
+  int level = 1;
+  while (level < 10 && (1 << level) < segments &&
+         per_face * std::ldexp(1.0, 2 * (level + 1)) <= static_cast<double>(most_triangles))
+    ++level;
+  return level;
+}
+
 TriangleMesh tessellate_limit(const LimitForest& forest, const PolygonMesh& cage,
-                              const std::vector<std::uint32_t>& face_of, int segments, std::size_t most_triangles) {
-  const Result<CageLevels> refined =
-      refine_cage(cage, {forest.cage.scheme, levels_of(cage, segments, most_triangles), false});
+                              const std::vector<std::uint32_t>& face_of, int levels) {
+  const Result<CageLevels> refined = refine_cage(cage, {forest.cage.scheme, levels, false});
   TriangleMesh mesh;
   if (!refined.ok()) return mesh;
   std::vector<std::uint32_t> nodes = forest.roots;

@@ -96,7 +96,8 @@ std::vector<Vec3> side_poles(const LimitPatch& patch, int corners, int side) {
 
 Vec2 corner_of_domain(const LimitNode& node, int corners, int corner) {
   const double h = node.size() * (node.flipped ? -1 : 1);
-  const bool right = corner == 1 || (corner == 2 && corners == 4), up = corners == 4 ? corner >= 2 : corner == 2;
+  const bool right = corner == 1 || (corner == 2 && corners == 4),
+             up = corners == 4 ? corner >= 2 : corner == 2;
   return node.origin + Vec2{right ? h : 0, up ? h : 0};
 }
 
@@ -104,7 +105,8 @@ class PartBuilder {
  public:
   PartBuilder(const LimitForest& forest, const PolygonMesh& cage, std::vector<Piece> pieces)
       : forest_(forest), cage_(cage), pieces_(std::move(pieces)), use_(forest, pieces_) {
-    for (const CageLevel& level : forest.cage.levels) edges_.emplace_back(level.edge_vertices.size(), kNoIndex);
+    for (const CageLevel& level : forest.cage.levels)
+      edges_.emplace_back(level.edge_vertices.size(), kNoIndex);
   }
 
   Part build() {
@@ -149,7 +151,8 @@ class PartBuilder {
     const int corners = forest_.corners();
     std::vector<SidePart> parts;
     for (int side = 0; side < corners; ++side) {
-      const Vec2 a = corner_of_domain(node, corners, side), b = corner_of_domain(node, corners, (side + 1) % corners);
+      const Vec2 a = corner_of_domain(node, corners, side),
+                 b = corner_of_domain(node, corners, (side + 1) % corners);
       parts.clear();
       collect_parts(forest_, use_, whole_side(node, side), parts);
       for (const SidePart& part : parts) {
@@ -200,7 +203,8 @@ class PartBuilder {
   void mark_borders() {
     std::vector<std::uint8_t> uses(part_.edges.size(), 0);
     for (const Face& face : part_.faces)
-      for (const Trim& trim : face.loops[0]) uses[trim.edge] = static_cast<std::uint8_t>(std::min(uses[trim.edge] + 1, 2));
+      for (const Trim& trim : face.loops[0])
+        uses[trim.edge] = static_cast<std::uint8_t>(std::min(uses[trim.edge] + 1, 2));
     for (std::size_t e = 0; e < uses.size(); ++e)
       if (uses[e] < 2) part_.edges[e].smooth = false;
   }
@@ -244,12 +248,14 @@ std::vector<std::uint32_t> faces_by_node(const LimitForest& forest, const std::v
 
 Part make_limit_part(const LimitForest& forest, const PolygonMesh& cage, double diagonal,
                      const LimitPartOptions& options) {
-  const LimitCover cover = make_cover(forest, diagonal, options);
+  // Every piece has triangles: none is smaller than they are.
+  const bool triangles = options.segments_per_edge > 0;
+  const int levels = triangles ? tessellation_levels(cage, options.segments_per_edge, options.most_triangles)
+                               : kMaxSubdivisionLevels;
+  const LimitCover cover = make_cover(forest, diagonal, options, levels);
   const std::vector<Piece> pieces = pieces_of(forest, cover);
   Part part = PartBuilder(forest, cage, pieces).build();
-  if (options.segments_per_edge > 0)
-    part.mesh = tessellate_limit(forest, cage, faces_by_node(forest, pieces), options.segments_per_edge,
-                                 options.most_triangles);
+  if (triangles) part.mesh = tessellate_limit(forest, cage, faces_by_node(forest, pieces), levels);
   return part;
 }
 

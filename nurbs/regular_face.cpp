@@ -48,18 +48,18 @@ struct Sector {
   bool closed = false;
 };
 
-Sector sector_of(const Walker& walker, std::uint32_t face, std::uint32_t vertex) {
-  constexpr std::size_t kMost = 1 << 20;
+/// Of at most `most` faces: more are never regular.
+Sector sector_of(const Walker& walker, std::uint32_t face, std::uint32_t vertex, std::size_t most) {
   Sector sector;
   std::uint32_t first = face;
-  for (std::size_t i = 0; i < kMost; ++i) {
+  for (std::size_t i = 0; i < most; ++i) {
     const std::uint32_t before = walker.before(first, vertex);
     if (before == face) sector.closed = true;
     if (before == face || before == kNoIndex) break;
     first = before;
   }
   if (sector.closed) first = face;
-  for (std::uint32_t f = first; f != kNoIndex && sector.faces.size() < kMost; f = walker.next(f, vertex)) {
+  for (std::uint32_t f = first; f != kNoIndex && sector.faces.size() < most; f = walker.next(f, vertex)) {
     if (!sector.faces.empty() && f == first) break;
     sector.faces.push_back(f);
   }
@@ -82,10 +82,11 @@ class RegularFace {
   bool regular_at(std::uint32_t face, int corner) const {
     const std::uint32_t vertex = walker_.vertex(face, corner);
     if (level_.semi_sharp[vertex]) return false;
-    const Sector sector = sector_of(walker_, face, vertex);
+    const std::size_t whole = corners_ == 4 ? 4 : 6;
+    const Sector sector = sector_of(walker_, face, vertex, whole + 1);
+    const std::size_t count = sector.faces.size();
     for (std::uint32_t f : sector.faces)
       if (static_cast<int>(level_.vertices(f).size()) != corners_) return false;
-    const std::size_t whole = corners_ == 4 ? 4 : 6, count = sector.faces.size();
     switch (level_.rules[vertex]) {
       case VertexRule::smooth:
         return sector.closed && count == whole;
@@ -100,7 +101,8 @@ class RegularFace {
 
   const Vec3& at(std::uint32_t vertex) const { return level_.points[vertex]; }
 
-  /// Where there is no face, the spline's control points are mirrored: that makes its border the crease's curve.
+  /// Where there is no face, the spline's control points are mirrored: that makes its border the crease's
+  /// curve.
   LimitPatch bicubic(std::uint32_t face, int rotation) const {
     // Places in the 4 × 4 control points: the corners, the two beyond each side, the one beyond each corner.
     constexpr std::size_t kCorner[4] = {5, 6, 10, 9}, kBeyond[4][2] = {{1, 2}, {7, 11}, {14, 13}, {8, 4}},
@@ -137,8 +139,8 @@ class RegularFace {
     return from_bicubic_spline(q);
   }
 
-  /// The vertex that follows the face's own around a corner, k faces on against the clock (k < 0: with it), or nothing
-  /// beyond a crease.
+  /// The vertex that follows the face's own around a corner, k faces on against the clock (k < 0: with it),
+  /// or nothing beyond a crease.
   std::optional<Vec3> around(std::uint32_t face, std::uint32_t vertex, int k) const {
     for (; face != kNoIndex && k > 0; --k) face = walker_.next(face, vertex);
     for (; face != kNoIndex && k < 0; ++k) face = walker_.before(face, vertex);
@@ -147,15 +149,15 @@ class RegularFace {
   }
 
   LimitPatch quartic(std::uint32_t face, int rotation) const {
-    // The support around each corner, in the order of faces from the triangle itself: first the edge that starts there.
+    // The support around each corner, in the order of faces from the triangle itself: first the edge that
+    // starts there.
     constexpr int kPlaces[3][6] = {{1, 2, 3, 4, 5, 6}, {2, 0, 6, 7, 8, 9}, {0, 1, 9, 10, 11, 3}};
     std::array<std::optional<Vec3>, 12> q;
     for (int i = 0; i < 3; ++i) {
       const std::uint32_t v = walker_.vertex(face, i + rotation);
       q[static_cast<std::size_t>(i)] = at(v);
       for (int k = -5; k <= 5; ++k)
-        if (const auto p = around(face, v, k))
-          q[static_cast<std::size_t>(kPlaces[i][(k + 6) % 6])] = *p;
+        if (const auto p = around(face, v, k)) q[static_cast<std::size_t>(kPlaces[i][(k + 6) % 6])] = *p;
       // The last face of an open sector ends in an edge that no face starts with.
       add_last(face, v, kPlaces[i], q);
     }
@@ -173,12 +175,14 @@ class RegularFace {
         face = next;
         continue;
       }
-      q[static_cast<std::size_t>(places[(k + 1) % 6])] = at(walker_.vertex(face, walker_.corner_of(face, v) - 1));
+      q[static_cast<std::size_t>(places[(k + 1) % 6])] =
+          at(walker_.vertex(face, walker_.corner_of(face, v) - 1));
       return;
     }
   }
 
-  /// Beyond a border edge ab of a triangle abc lies a + b − c; what no such triangle gives lies beyond a corner.
+  /// Beyond a border edge ab of a triangle abc lies a + b − c; what no such triangle gives lies beyond a
+  /// corner.
   static void mirror_beyond(std::array<std::optional<Vec3>, 12>& q) {
     constexpr std::array<std::array<int, 2>, 6> kRing{{{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}}};
     const auto index = [](int x, int y) {
@@ -203,7 +207,8 @@ class RegularFace {
         }
         // Beyond a corner: straight on.
         for (std::size_t r = 0; r < 6 && !q[k] && pass > 0; ++r) {
-          const auto a = get(x + kRing[r][0], y + kRing[r][1]), b = get(x + 2 * kRing[r][0], y + 2 * kRing[r][1]);
+          const auto a = get(x + kRing[r][0], y + kRing[r][1]),
+                     b = get(x + 2 * kRing[r][0], y + 2 * kRing[r][1]);
           if (a && b) q[k] = *a * 2 - *b;
         }
       }
@@ -218,7 +223,8 @@ class RegularFace {
 
 }  // namespace
 
-std::optional<LimitPatch> regular_patch(const CageLevel& level, int corners, std::uint32_t face, int rotation) {
+std::optional<LimitPatch> regular_patch(const CageLevel& level, int corners, std::uint32_t face,
+                                        int rotation) {
   return RegularFace(level, corners).patch(face, rotation);
 }
 

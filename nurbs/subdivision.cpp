@@ -13,8 +13,12 @@ namespace dupin {
 namespace {
 
 constexpr int kFewestLevels = 3;
+/// Cuts from which it is told how many more are worth it.
+constexpr int kProbeLevels = 5;
 /// Creases less sharp than this are never taken for infinitely sharp.
 constexpr double kLeastSharpened = 3;
+/// A level that has so many times the faces of the one before grows along edges, not around vertices.
+constexpr double kAlongEdges = 1.7;
 /// Pieces that refinement may make in all.
 constexpr double kMostPieces = 1e6;
 
@@ -48,10 +52,15 @@ LevelPlan plan_levels(const LimitForest& few, double sharpest, double diagonal, 
   constexpr int kBelowCaps = 3;      // to bound what a cap is off
   int level = last;
   double pieces = 0, each = counts[1];
+  // Along edges that are not manifold OpenSubdiv refines for ever.
+  double faces = static_cast<double>(few.cage.levels[few.cage.levels.size() - 1].face_count());
+  const double before = static_cast<double>(few.cage.levels[few.cage.levels.size() - 2].face_count());
+  const bool along_edges = faces > kAlongEdges * before;
   while (level < kMaxSubdivisionLevels && longest > least_size * diagonal * std::ldexp(1.0, -kBelowCaps)) {
     each = level < sharpest ? each * growth : counts[1];
     pieces += kPiecesEach * each;
-    if (pieces > kMostPieces) return {level, false};
+    if (along_edges) faces *= 2;
+    if (pieces > kMostPieces || (along_edges && faces > kMostPieces)) return {level, false};
     ++level, longest *= 0.5;
   }
   return {level, true};
@@ -72,7 +81,8 @@ double sharpest_of(const SubdivisionTags& tags) {
 int sharpen(SubdivisionTags& tags, double from) {
   int count = 0;
   for (auto& crease : tags.creases)
-    if (crease.sharpness >= from && crease.sharpness < kInfinitelySharp) crease.sharpness = kInfinitelySharp, ++count;
+    if (crease.sharpness >= from && crease.sharpness < kInfinitelySharp)
+      crease.sharpness = kInfinitelySharp, ++count;
   return count;
 }
 
@@ -88,7 +98,8 @@ LimitJet nothing() {
 
 class SubdivisionSurface::Impl {
  public:
-  Impl(PolygonMesh cage, CageLevels levels) : cage_(std::move(cage)), forest_(make_limit_forest(std::move(levels))) {
+  Impl(PolygonMesh cage, CageLevels levels)
+      : cage_(std::move(cage)), forest_(make_limit_forest(std::move(levels))) {
     faces_.assign(cage_.polygon_count(), kNoIndex);
     for (std::size_t f = 0; f < forest_.cage.polygons.size(); ++f)
       faces_[forest_.cage.polygons[f]] = static_cast<std::uint32_t>(f);
@@ -119,12 +130,12 @@ SubdivisionSurface::SubdivisionSurface(SubdivisionSurface&&) noexcept = default;
 SubdivisionSurface& SubdivisionSurface::operator=(SubdivisionSurface&&) noexcept = default;
 SubdivisionSurface::~SubdivisionSurface() = default;
 
-Result<SubdivisionSurface> SubdivisionSurface::make(const PolygonMesh& cage, const SubdivisionOptions& options) {
+Result<SubdivisionSurface> SubdivisionSurface::make(const PolygonMesh& cage,
+                                                    const SubdivisionOptions& options) {
   if (Status status = check(cage); !status.ok()) return status;
   if (options.levels != 0 && (options.levels < kFewestLevels || options.levels > kMaxSubdivisionLevels))
-    return {StatusCode::invalid_argument,
-            "subdivision levels must be " + std::to_string(kFewestLevels) + " to " +
-                std::to_string(kMaxSubdivisionLevels)};
+    return {StatusCode::invalid_argument, "subdivision levels must be " + std::to_string(kFewestLevels) +
+                                              " to " + std::to_string(kMaxSubdivisionLevels)};
   Box3 box;
   for (const Vec3& p : cage.positions) box.add(p);
   PolygonMesh own = cage;
@@ -132,9 +143,10 @@ Result<SubdivisionSurface> SubdivisionSurface::make(const PolygonMesh& cage, con
   LevelPlan plan{options.levels, true};
   while (options.levels == 0) {
     const double sharpest = sharpest_of(own.tags);
-    Result<CageLevels> few = refine_cage(own, {options.scheme, kFewestLevels, true});
+    Result<CageLevels> few = refine_cage(own, {options.scheme, kProbeLevels, true});
     if (!few.ok()) return few.status();
-    plan = plan_levels(make_limit_forest(std::move(*few)), sharpest, box.diagonal(), LimitPartOptions{}.least_size);
+    plan = plan_levels(make_limit_forest(std::move(*few)), sharpest, box.diagonal(),
+                       LimitPartOptions{}.least_size);
     const double from = std::ceil(sharpest) - 1;
     if (plan.complete || from < kLeastSharpened) break;
     sharpened.count += sharpen(own.tags, from);

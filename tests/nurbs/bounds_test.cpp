@@ -53,6 +53,63 @@ TEST(Bounds, HoldEveryPointAndNormal) {
   EXPECT_GT(bounded, 0.8 * all);  // the bounds say something
 }
 
+/// Halves the patch until there are bounds; visits the pieces.
+template <class Visit>
+void bounded_pieces(const BezierPatch& patch, int depth, const Visit& visit) {
+  const CurvatureBounds bounds = curvature_bounds(patch);
+  if (bounds.bounded() || depth == 0) return visit(patch, bounds);
+  for (const double s : {0.0, 0.5})
+    for (const double t : {0.0, 0.5})
+      bounded_pieces(subpatch(patch, s, s + 0.5, t, t + 0.5), depth - 1, visit);
+}
+
+TEST(Bounds, HoldEveryCurvature) {
+  int bounded = 0, all = 0;
+  for (const Sample& sample : rational_samples())
+    for (const BezierPatch& whole : bezier_patches(sample.surface, sample.region))
+      bounded_pieces(whole, 3, [&](const BezierPatch& patch, const CurvatureBounds& bounds) {
+        ++all;
+        if (!bounds.bounded()) return;
+        ++bounded;
+        const double slack = 1e-9 * bounds.largest();
+        for (int i = 0; i <= 4; ++i)
+          for (int j = 0; j <= 4; ++j) {
+            const double u = patch_to_surface_u(patch, 1e-9 + (1 - 2e-9) * i / 4);
+            const double v = patch_to_surface_v(patch, 1e-9 + (1 - 2e-9) * j / 4);
+            const Curvature k = principal_curvature(evaluate(sample.surface, u, v, 2));
+            if (k.kind == Curvature::Kind::undefined) continue;
+            EXPECT_LE(std::max(k.k1, k.k2), bounds.hi + slack) << sample.name;
+            EXPECT_GE(std::min(k.k1, k.k2), bounds.lo - slack) << sample.name;
+          }
+      });
+  EXPECT_GT(bounded, 0.8 * all);  // the bounds say something
+}
+
+TEST(Bounds, OfCurvatureTightenAsPatchesAreHalved) {
+  Random random(11);
+  const Surface surface{testing::random_surface(random, {.extra_u = 0, .extra_v = 0, .rational = true})};
+  const BezierPatch patch = bezier_patches(surface, {{0, 0}, {1, 1}}).front();
+  const Curvature k = principal_curvature(evaluate(surface, 0.4, 0.6, 2));
+  double before = 0;
+  for (double h = 1.0 / 32; h > 1e-3; h /= 2) {
+    const CurvatureBounds bounds = curvature_bounds(subpatch(patch, 0.4 - h, 0.4 + h, 0.6 - h, 0.6 + h));
+    ASSERT_TRUE(bounds.bounded()) << h;
+    const double excess = (bounds.hi - std::max(k.k1, k.k2)) + (std::min(k.k1, k.k2) - bounds.lo);
+    if (before > 0) EXPECT_LT(excess, 0.6 * before);
+    before = excess;
+  }
+  const Surface sphere{Sphere{{}, 2}};
+  const CurvatureBounds bounds = curvature_bounds(bezier_patches(sphere, {{0, -0.05}, {0.1, 0.05}}).front());
+  EXPECT_NEAR(bounds.lo, -0.5, 0.1);
+  EXPECT_NEAR(bounds.hi, -0.5, 0.1);
+}
+
+TEST(Bounds, OfCurvatureSayNothingAtASingularPoint) {
+  const Surface sphere{Sphere{{}, 1}};
+  EXPECT_FALSE(
+      curvature_bounds(bezier_patches(sphere, {{0, 1.2}, {1, std::numbers::pi / 2}}).front()).bounded());
+}
+
 TEST(Bounds, ConesAreTightOnSmallPatches) {
   const Surface sphere{Sphere{{}, 1}};
   const BezierPatch patch = bezier_patches(sphere, {{0, -0.1}, {0.2, 0.1}}).front();

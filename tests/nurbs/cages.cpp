@@ -38,11 +38,11 @@ PolygonMesh cube_cage() {
 
 PolygonMesh icosahedron_cage() {
   const double g = std::numbers::phi;
-  std::vector<Vec3> p{{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                      {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  return cage_of(p, {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                     {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8},
-                     {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}});
+  std::vector<Vec3> p{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                      {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+  return cage_of(p, {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                     {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                     {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}});
 }
 
 namespace {
@@ -82,7 +82,8 @@ PolygonMesh grid_cage(int nu, int nv, bool triangles, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::vector<Vec3> p;
   for (int i = 0; i < nu; ++i)
-    for (int j = 0; j < nv; ++j) p.push_back({i + 0.1 * noise(random), j + 0.1 * noise(random), 0.5 * noise(random)});
+    for (int j = 0; j < nv; ++j)
+      p.push_back({i + 0.1 * noise(random), j + 0.1 * noise(random), 0.5 * noise(random)});
   return cage_of(p, lattice_polygons(nu, nv, false, triangles));
 }
 
@@ -130,7 +131,8 @@ FanCage::Place FanCage::step(const Place& from, int di, int dj) const {
   const int a = i + di, b = j + dj;
   if (a >= 0 && b >= 0) return canonical(k, a, b);
   // Over a spoke a quad lattice turns by a right angle, a triangular one keeps its six neighbours.
-  if (b < 0 && a >= 0) return triangles_ ? canonical(k - 1 + valence_, -b, a + b) : canonical(k - 1 + valence_, -b, a);
+  if (b < 0 && a >= 0)
+    return triangles_ ? canonical(k - 1 + valence_, -b, a + b) : canonical(k - 1 + valence_, -b, a);
   if (a < 0 && b >= 0) return triangles_ ? canonical(k + 1, a + b, -a) : canonical(k + 1, b, -a);
   return {-1, 0, 0};
 }
@@ -142,7 +144,8 @@ std::map<FanCage::Place, double> FanCage::vertex_rule(const Place& at) const {
   const double n = centre ? valence_ : triangles_ ? 6 : 4;
   std::vector<Place> edges, faces;
   if (centre) {
-    for (int s = 0; s < valence_; ++s) edges.push_back(canonical(s, 1, 0)), faces.push_back(canonical(s, 1, 1));
+    for (int s = 0; s < valence_; ++s)
+      edges.push_back(canonical(s, 1, 0)), faces.push_back(canonical(s, 1, 1));
   } else {
     constexpr int kQuad[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
     constexpr int kTriangle[6][2] = {{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}};

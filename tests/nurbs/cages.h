@@ -21,14 +21,14 @@ PolygonMesh torus_cage(int around, int across, bool triangles, std::uint64_t see
 /// An open strip of quads with a boundary, of triangles, or with pentagons at its end.
 PolygonMesh grid_cage(int nu, int nv, bool triangles, std::uint64_t seed);
 
-/// A vertex of any valence in the middle of a regular lattice of `radius` rings. Polygon 0 is at the vertex, which is its
-/// first corner; it is a quad or a triangle.
+/// A vertex of any valence in the middle of a regular lattice of `radius` rings. Polygon 0 is at the vertex,
+/// which is its first corner; it is a quad or a triangle.
 class FanCage {
  public:
   FanCage(int valence, bool triangles, std::uint64_t seed);
   const PolygonMesh& mesh() const { return mesh_; }
-  /// Jets of polygon 0's limit by Stam's method: the subdivision matrix's eigenvectors raise it to the power that (u, v)
-  /// needs; order 2.
+  /// Jets of polygon 0's limit by Stam's method: the subdivision matrix's eigenvectors raise it to the power
+  /// that (u, v) needs; order 2.
   SurfaceJet stam(double u, double v) const;
 
  private:

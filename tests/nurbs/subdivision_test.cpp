@@ -37,36 +37,56 @@ PolygonMesh with(PolygonMesh cage, const std::function<void(SubdivisionTags&)>& 
   return cage;
 }
 
-/// Every rule that there is: creases of both kinds, corners, darts, boundaries, holes, polygons of other sizes, and
-/// vertices where surfaces touch.
+/// Every rule that there is: creases of both kinds, corners, darts, boundaries, holes, polygons of other
+/// sizes, and vertices where surfaces touch.
 std::vector<Named> cages_of_all_kinds() {
   const PolygonMesh cube = test::cube_cage(), grid = test::grid_cage(5, 6, false, 3),
                     ico = test::icosahedron_cage(), triangles = test::grid_cage(5, 5, true, 4);
   std::vector<Named> cages{{"cube", cube}, {"grid", grid}, {"icosahedron", ico}, {"triangles", triangles}};
-  cages.push_back({"creased", with(cube, [](auto& t) { t.creases = {{4, 5, 10}, {5, 7, 10}, {7, 6, 10}, {6, 4, 10}}; })});
-  cages.push_back({"semi-sharp", with(cube, [](auto& t) { t.creases = {{4, 5, 1.5f}, {5, 7, 2}, {7, 6, 0.3f}, {6, 4, 1}}; })});
+  cages.push_back({"creased", with(cube, [](auto& t) {
+                     t.creases = {{4, 5, 10}, {5, 7, 10}, {7, 6, 10}, {6, 4, 10}};
+                   })});
+  cages.push_back({"semi-sharp", with(cube, [](auto& t) {
+                     t.creases = {{4, 5, 1.5f}, {5, 7, 2}, {7, 6, 0.3f}, {6, 4, 1}};
+                   })});
   cages.push_back({"dart", with(cube, [](auto& t) { t.creases = {{4, 5, 10}}; })});
   cages.push_back({"corners", with(cube, [](auto& t) { t.corners = {{0, 10}, {7, 2.5f}}; })});
-  cages.push_back({"three creases meet", with(cube, [](auto& t) { t.creases = {{0, 1, 10}, {0, 2, 10}, {0, 4, 10}}; })});
-  cages.push_back({"chaikin", with(cube, [](auto& t) { t.chaikin = true, t.creases = {{4, 5, 3}, {5, 7, 2}, {7, 6, 1}}; })});
-  cages.push_back({"corners of a boundary", with(grid, [](auto& t) { t.boundary = SubdivisionTags::Boundary::edges_and_corners; })});
+  cages.push_back({"three creases meet", with(cube, [](auto& t) {
+                     t.creases = {{0, 1, 10}, {0, 2, 10}, {0, 4, 10}};
+                   })});
+  cages.push_back({"chaikin", with(cube, [](auto& t) {
+                     t.chaikin = true, t.creases = {{4, 5, 3}, {5, 7, 2}, {7, 6, 1}};
+                   })});
+  cages.push_back({"corners of a boundary",
+                   with(grid, [](auto& t) { t.boundary = SubdivisionTags::Boundary::edges_and_corners; })});
   cages.push_back({"no boundary", with(grid, [](auto& t) { t.boundary = SubdivisionTags::Boundary::none; })});
   cages.push_back({"hole", with(cube, [](auto& t) { t.holes = {1}; })});
-  cages.push_back({"creases of triangles", with(ico, [](auto& t) { t.creases = {{0, 11, 10}, {0, 5, 10}, {1, 8, 1.7f}}; })});
-  cages.push_back({"corners of triangles", with(triangles, [](auto& t) { t.boundary = SubdivisionTags::Boundary::edges_and_corners; })});
-  cages.push_back({"a crease through triangles", with(test::torus_cage(8, 7, true, 5), [](auto& t) {
-                     for (std::uint32_t i = 0; i < 8; ++i) t.creases.push_back({7 * i, 7 * ((i + 1) % 8), 10});
+  cages.push_back({"creases of triangles", with(ico, [](auto& t) {
+                     t.creases = {{0, 11, 10}, {0, 5, 10}, {1, 8, 1.7f}};
                    })});
-  cages.push_back({"polygons", test::cage_of({{0, 0, 0}, {1, 0, 0}, {1.5, 1, 0.2}, {0.5, 1.8, 0}, {-0.5, 1, 0.1}, {0.5, 0.8, 2}},
-                                             {{4, 3, 2, 1, 0}, {0, 1, 5}, {1, 2, 5}, {2, 3, 5}, {3, 4, 5}, {4, 0, 5}})});
-  cages.push_back({"two cubes at an edge", test::cage_of({{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}, {0, 1, 0}, {0, 1, 1}, {0, -1, 0}, {0, -1, 1}},
-                                                         {{0, 1, 2, 3}, {0, 3, 5, 4}, {3, 0, 6, 7}})});
+  cages.push_back({"corners of triangles", with(triangles, [](auto& t) {
+                     t.boundary = SubdivisionTags::Boundary::edges_and_corners;
+                   })});
+  cages.push_back({"a crease through triangles", with(test::torus_cage(8, 7, true, 5), [](auto& t) {
+                     for (std::uint32_t i = 0; i < 8; ++i)
+                       t.creases.push_back({7 * i, 7 * ((i + 1) % 8), 10});
+                   })});
+  cages.push_back(
+      {"polygons",
+       test::cage_of({{0, 0, 0}, {1, 0, 0}, {1.5, 1, 0.2}, {0.5, 1.8, 0}, {-0.5, 1, 0.1}, {0.5, 0.8, 2}},
+                     {{4, 3, 2, 1, 0}, {0, 1, 5}, {1, 2, 5}, {2, 3, 5}, {3, 4, 5}, {4, 0, 5}})});
+  cages.push_back(
+      {"two cubes at an edge",
+       test::cage_of(
+           {{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}, {0, 1, 0}, {0, 1, 1}, {0, -1, 0}, {0, -1, 1}},
+           {{0, 1, 2, 3}, {0, 3, 5, 4}, {3, 0, 6, 7}})});
   return cages;
 }
 
 /// All parameters of a polygon that are multiples of 1/n.
 template <class Visit>
-void each_parameter(const SubdivisionSurface& surface, const PolygonMesh& cage, std::size_t polygon, int n, const Visit& visit) {
+void each_parameter(const SubdivisionSurface& surface, const PolygonMesh& cage, std::size_t polygon, int n,
+                    const Visit& visit) {
   const bool loop = surface.scheme() == SubdivisionScheme::loop;
   const std::size_t corners = cage.corner_count(polygon), pieces = loop || corners == 4 ? 1 : corners;
   for (std::size_t piece = 0; piece < pieces; ++piece)
@@ -111,7 +131,8 @@ TEST(SubdivisionSurface, ARegularTorusIsTheSplineOfItsCage) {
   for (int j = -3; j <= nv + 3; ++j) spline.knots_v.push_back(j);
   for (int i = 0; i < nu + 3; ++i)
     for (int j = 0; j < nv + 3; ++j)
-      spline.poles.push_back(cage.positions[static_cast<std::size_t>((i + nu - 1) % nu * nv + (j + nv - 1) % nv)]);
+      spline.poles.push_back(
+          cage.positions[static_cast<std::size_t>((i + nu - 1) % nu * nv + (j + nv - 1) % nv)]);
   const SubdivisionSurface surface = surface_of(cage, 3);
   for (int i = 0; i < nu; ++i)
     for (int j = 0; j < nv; ++j) {
@@ -131,9 +152,11 @@ TEST(SubdivisionSurface, AgreesWithStamsEigenvectorsAroundEveryValence) {
     for (int valence = 3; valence <= 12; ++valence) {
       SCOPED_TRACE(std::to_string(valence) + (triangles ? " triangles" : " quads"));
       const FanCage fan(valence, triangles, static_cast<std::uint64_t>(valence));
-      const SubdivisionSurface surface = surface_of(fan.mesh(), 10, triangles ? SubdivisionScheme::loop : SubdivisionScheme::catmull_clark);
+      const SubdivisionSurface surface =
+          surface_of(fan.mesh(), 10, triangles ? SubdivisionScheme::loop : SubdivisionScheme::catmull_clark);
       for (int level = 0; level <= 8; ++level)
-        for (const Vec2 way : {Vec2{0.7, 0.2}, Vec2{0.31, 0.42}, Vec2{0.05, 0.55}, Vec2{1, 0}, Vec2{0.6, 0}}) {
+        for (const Vec2 way :
+             {Vec2{0.7, 0.2}, Vec2{0.31, 0.42}, Vec2{0.05, 0.55}, Vec2{1, 0}, Vec2{0.6, 0}}) {
           const Vec2 at = way * std::ldexp(1.0, -level);
           const LimitJet limit = surface.evaluate(0, at.x, at.y, 2);
           const SurfaceJet jet = fan.stam(at.x, at.y);
@@ -164,8 +187,8 @@ TEST(SubdivisionSurface, SaysWhereCurvatureHasNoLimit) {
 }
 
 TEST(SubdivisionSurface, ACubesCornerBendsAsItsExactPiecesSay) {
-  // Beside a vertex of valence 3 curvatures tend to a finite limit only along each direction; OpenSubdiv's default
-  // interpolants say -1.16 here.
+  // Beside a vertex of valence 3 curvatures tend to a finite limit only along each direction; OpenSubdiv's
+  // default interpolants say -1.16 here.
   const SubdivisionSurface surface = surface_of(test::cube_cage(), 12);
   const Curvature k = surface.curvature(0, 1e-3, 1e-3);
   EXPECT_EQ(k.kind, Curvature::Kind::regular);
@@ -182,8 +205,10 @@ TEST(SubdivisionSurface, AHoleHasNoPoints) {
 
 TEST(SubdivisionSurface, RefusesWhatIsNoCage) {
   EXPECT_EQ(SubdivisionSurface::make({}).status().code, StatusCode::unreadable);
-  EXPECT_EQ(SubdivisionSurface::make(test::cube_cage(), {SubdivisionScheme::loop, 5}).status().code, StatusCode::invalid_argument);
-  EXPECT_EQ(SubdivisionSurface::make(test::cube_cage(), {SubdivisionScheme::automatic, 99}).status().code, StatusCode::invalid_argument);
+  EXPECT_EQ(SubdivisionSurface::make(test::cube_cage(), {SubdivisionScheme::loop, 5}).status().code,
+            StatusCode::invalid_argument);
+  EXPECT_EQ(SubdivisionSurface::make(test::cube_cage(), {SubdivisionScheme::automatic, 99}).status().code,
+            StatusCode::invalid_argument);
   PolygonMesh twice = test::cage_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 1, 2}});
   EXPECT_EQ(SubdivisionSurface::make(twice).status().code, StatusCode::unreadable);
   PolygonMesh broken = test::cube_cage();
@@ -207,7 +232,8 @@ TEST(SubdivisionPart, IsAValidModelWhoseNeighboursMeet) {
           ++uses[trim.edge];
           for (const double t : {0.0, 0.2, 0.5, 0.9, 1.0}) {
             const Vec2 uv = point_at(trim.pcurve, t);
-            EXPECT_LT(distance(point_at(part.surfaces[face.surface], uv.x, uv.y), point_at(*part.edges[trim.edge].curve, t)),
+            EXPECT_LT(distance(point_at(part.surfaces[face.surface], uv.x, uv.y),
+                               point_at(*part.edges[trim.edge].curve, t)),
                       1e-13 * diagonal(cage));
           }
         }
@@ -233,11 +259,12 @@ void check_caps(const FanCage& fan) {
   auto levels = refine_cage(fan.mesh(), {SubdivisionScheme::automatic, 12, true});
   ASSERT_TRUE(levels.ok());
   const LimitForest forest = make_limit_forest(std::move(*levels));
+  const CapHulls hulls(forest);
   const SubdivisionSurface fine = surface_of(fan.mesh(), 12);
   for (int level = 1; level <= 3; ++level) {
     std::uint32_t node = forest.roots[0];
     for (int l = 0; l < level; ++l) node = forest.nodes[node].first_child;
-    const LimitCap cap = make_cap(forest, node);
+    const LimitCap cap = make_cap(forest, hulls, node);
     EXPECT_LT(cap.deviation, 0.2 * cap.size);
     double worst = 0, worst_normal = 0;
     for (int i = 0; i <= 32; ++i)
