@@ -75,7 +75,7 @@ def verdict(study):
                          + [f"{s.ahead_at_once} of {s.pictures - s.neither}"])
             slow = [title for m, title, _ in data.MEASURES if s.median(m) is not None and s.median(m) <= 1]
             if limit <= 3 and slow:
-                behind.append(f"At an RMSE of {limit}, {other} is ahead of quadric in the median on {' and '.join(slow)}.")
+                behind.append(f"At an RMSE of {limit} at most, quadric is behind {other} in the median on {' and '.join(slow)}.")
     if not lines:
         return ""
     words = "".join(f'<li class="behind">{text(sentence)}</li>' for sentence in behind)

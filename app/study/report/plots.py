@@ -50,7 +50,7 @@ class Plots:
                 axis.plot([c for _, c, _, _ in list_], [max(e, 1e-3) for _, _, e, _ in list_], "o-", color=color(primitive),
                           label=primitive, zorder=2)
             axis.axhline(3, color="#444444", linewidth=0.8, linestyle=":")
-            axis.set(xscale="log", yscale="log", xlabel=f"{title}, {unit}")
+            axis.set(xscale="log", yscale="log", xlabel=title if title == unit else f"{title}, {unit}")
         axes[0].set_ylabel("RMSE over covered pixels, of 255")
         axes[0].legend(fontsize=8)
         return self._finish(figure, name)
@@ -72,7 +72,7 @@ class Plots:
                 ends = [min(x for x, _ in pairs), max(x for x, _ in pairs)]
                 axis.plot(ends, [fit[1] * x ** fit[0] for x in ends], color=color(primitive), linewidth=1.5)
             axis.plot(*zip(*pairs), ".", color=color(primitive), alpha=0.5, label=label, rasterized=len(pairs) > 500)
-        axis.set(xscale="log", yscale="log", xlabel="primitives n", ylabel=f"{title}, {unit}")
+        axis.set(xscale="log", yscale="log", xlabel="primitives n", ylabel=title if title == unit else f"{title}, {unit}")
         axis.legend(fontsize=8)
         return self._finish(figure, name), fits
 
