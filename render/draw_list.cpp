@@ -2,7 +2,6 @@
 
 #include <bit>
 #include <limits>
-#include <map>
 
 #include "part_camera.h"
 
@@ -12,15 +11,6 @@ namespace {
 /// With a perspective camera among the model's parts, what is nearer to the eye than this part of the
 /// farthest depth is not drawn.
 constexpr double kNearestOfFar = 1e-6;
-
-/// Curved DPs nearer than this many radii of their bounding sphere are drawn by their prisms: nothing of the
-/// others is near the eye.
-constexpr double kProxyDistance = 1.2;
-
-/// Planar DPs with pieces are drawn by rectangles of their covers whose cells are about this large: smaller
-/// ones waste more pixels around them than they spare, and edges, half their width and half a pixel, must not
-/// reach over a cell's margin.
-constexpr double kCellPx = 16;
 
 void depth_range(const Scene::Impl& scene, const ViewRays& view, DrawList& list) {
   double lo = std::numeric_limits<double>::infinity(), hi = -lo;
@@ -136,7 +126,7 @@ enum class Facing { away, towards, unknown };
 
 Facing facing(const DpBounds& dp, const PartCamera& camera) {
   const Vec3 towards = camera.perspective ? camera.eye - dp.center : camera.eye;
-  if (dp.planar) return dot(dp.axis, towards) < 0 ? Facing::away : Facing::towards;
+  if (dp.dp.planar) return dot(dp.axis, towards) < 0 ? Facing::away : Facing::towards;
   if (dp.sin_cone >= 1) return Facing::unknown;
   const double l = length(towards);
   const double sin_sphere = camera.perspective ? dp.radius / l : 0;
@@ -159,35 +149,32 @@ bool out_of_view(const DpBounds& dp, const PartCamera& camera) {
          dot(camera.depth.n, dp.center) + camera.depth.d < -dp.radius * length(camera.depth.n);
 }
 
-/// Sorts planar DPs before curved ones, kinds together, and within a kind the nearest first.
+/// Nearest first.
 struct Candidate {
-  std::uint64_t key;
+  std::uint32_t key;
   DrawItem item;
-  const DpBounds* dp;
-  double radius_px;
+  SeenDp seen;
 };
 
-std::uint64_t sort_key(std::uint32_t kind, float depth) {
+std::uint32_t sort_key(float depth) {
   // Floats in order as unsigned integers: the sign bit turned for positive ones, all bits for negative ones.
   const auto bits = std::bit_cast<std::uint32_t>(depth);
-  const std::uint32_t ordered = bits & 0x80000000U ? ~bits : bits | 0x80000000U;
-  return static_cast<std::uint64_t>(kind & kCurvedKind) << 48 | static_cast<std::uint64_t>(kind) << 32 |
-         ordered;
+  return bits & 0x80000000U ? ~bits : bits | 0x80000000U;
 }
 
 /// The bound where the DP is nearest to the eye.
 double bound_px(const DpBounds& dp, double depth, double scale, const ViewRays& view, const DrawList& list) {
   const double nearest = std::max(depth - scale * dp.radius, list.near_depth);
-  return scale * dp.bound / pixel_size(view, nearest);
+  return scale * dp.dp.bound / pixel_size(view, nearest);
 }
 
 void add_dps(const SceneInstance& instance, std::uint32_t index, const ScenePart& part,
-             const PartCamera& camera, const ViewRays& view, Footprints& footprints, bool flats,
-             DrawList& list, std::vector<Candidate>& candidates) {
-  const double depth_scale = length(camera.depth.n), largest_scale = depth_scale * instance.scale_ratio;
+             const PartCamera& camera, const ViewRays& view, Footprints& footprints, DrawList& list,
+             std::vector<Candidate>& candidates) {
+  const double largest_scale = length(camera.depth.n) * instance.scale_ratio;
   for (std::size_t i = 0; i < part.dps.size(); ++i) {
     const DpBounds& dp = part.dps[i];
-    std::uint32_t color = instance.colors.of(dp.color_face);
+    std::uint32_t color = instance.colors.of(dp.dp.face);
     if (is_hidden(color) || out_of_view(dp, camera)) continue;
     if (camera.cut_solid && !is_highlighted(color)) color = (color & 0xffffff) | kSolidColor;
     const Facing side = facing(dp, camera);
@@ -195,127 +182,34 @@ void add_dps(const SceneInstance& instance, std::uint32_t index, const ScenePart
     const double radius_px = footprints.add(camera, dp.center, dp.radius);
     const double depth = dot(camera.depth.n, dp.center) + camera.depth.d;
     list.bound_px = std::max(list.bound_px, bound_px(dp, depth, largest_scale, view, list));
-    std::uint32_t kind = flats ? dp.kind : dp.kind & ~kFlatKind;
-    if (kind & kCurvedKind) {
-      if (camera.cull_turned_away || side != Facing::unknown) kind |= kOneRootKind;
-      if (camera.perspective && depth < kProxyDistance * dp.radius * depth_scale) kind |= kPrismKind;
-    }
-    candidates.push_back({sort_key(kind, static_cast<float>(depth)),
-                          {dp.record, side == Facing::away ? index | kFromBehindItem : index,
-                           instance.first_primitive + static_cast<std::uint32_t>(i) + 1, color},
-                          &dp,
-                          radius_px});
+    candidates.push_back(
+        {sort_key(static_cast<float>(depth)),
+         {dp.record, index, instance.first_primitive + static_cast<std::uint32_t>(i) + 1, color},
+         {&dp, &camera, 0, 2 * radius_px, radius_px / std::max(dp.radius, 1e-300), side == Facing::towards,
+          side == Facing::away}});
   }
 }
 
-/// Rectangles of planar DPs, by kind.
-using Rectangles = std::map<std::uint32_t, std::vector<Texel>>;
-
-std::uint32_t word(double v) {
-  return std::bit_cast<std::uint32_t>(static_cast<float>(v));
-}
-Texel texel_of(double x, double y, double z, double w) {
-  return {word(x), word(y), word(z), word(w)};
-}
-
-void add_rectangle(const Box2& b, std::size_t slot, std::vector<Texel>& texels) {
-  texels.push_back(texel_of(b.lo.x, b.lo.y, b.hi.x, b.hi.y));
-  texels.push_back({static_cast<std::uint32_t>(slot), 0, 0, 0});
-}
-
-/// With the pieces that reach into it, features first.
-void add_rectangle(const BoundaryRectangle& r, std::size_t slot, const FlatPieces& room,
-                   std::vector<Texel>& texels) {
-  add_rectangle(r.box, slot, texels);
-  const std::size_t head = texels.size() - 1;
-  std::uint32_t features[2] = {0, 0};
-  for (const bool feature : {true, false})
-    for (const LinePiece& l : r.lines) {
-      if (l.feature != feature) continue;
-      const Vec2 a = l.p0 - r.reference, b = l.p1 - r.reference;
-      texels.push_back(texel_of(a.x, a.y, b.x, b.y));
-      features[0] += feature;
-    }
-  texels.resize(head + 1 + room.lines);
-  for (const bool feature : {true, false})
-    for (const ArcPiece& arc : r.arcs) {
-      if (arc.feature != feature) continue;
-      append_arc(arc, r.reference, texels);
-      features[1] += feature;
-    }
-  texels.resize(head + 1 + room.lines + 2 * room.arcs);
-  texels[head] = {
-      static_cast<std::uint32_t>(slot) | (r.reference_inside ? 0x80000000U : 0U),
-      static_cast<std::uint32_t>(r.lines.size() | r.arcs.size() << 8) | features[0] << 16 | features[1] << 24,
-      word(r.reference.x), word(r.reference.y)};
-}
-
-/// The kind of planar.vert that has room for the rectangle's pieces, or that of the whole DP.
-std::uint32_t rectangle_kind(const BoundaryRectangle& r, std::uint32_t whole, bool flats) {
-  for (const std::uint32_t flat : {4U, 5U}) {
-    const FlatPieces& room = kFlatPieces[flat - 1];
-    if (flats && r.lines.size() <= room.lines && r.arcs.size() <= room.arcs) return flat << kFlatShift;
-  }
-  return whole;
-}
-
-void add_planar(const Candidate& c, std::uint32_t kind, std::size_t slot, bool flats,
-                Rectangles& rectangles) {
-  std::size_t level = std::size(kCoverResolutions);
-  while (level > 0 && 2 * c.radius_px < kCellPx * 1.4 * kCoverResolutions[level - 1]) --level;
-  const PlanarCover& cover = (*c.dp->covers)[level > 0 ? level - 1 : 0];
-  if (level > 0) {
-    for (const BoundaryRectangle& r : cover.boundary) {
-      const std::uint32_t own = rectangle_kind(r, kind, flats);
-      if (own == kind) {
-        add_rectangle(r.box, slot, rectangles[kind]);
-      } else {
-        add_rectangle(r, slot, kFlatPieces[(own >> kFlatShift) - 1], rectangles[own]);
-      }
-    }
-    for (const Box2& b : cover.inside) add_rectangle(b, slot, rectangles[kInsideKind]);
-    return;
-  }
-  Box2 whole;
-  for (const BoundaryRectangle& r : cover.boundary) whole.add(r.box.lo), whole.add(r.box.hi);
-  for (const Box2& b : cover.inside) whole.add(b.lo), whole.add(b.hi);
-  if (!whole.empty()) add_rectangle(whole, slot, rectangles[kind]);
-}
-
-/// Planar DPs without pieces, then rectangles, then curved DPs.
-void fill_groups(const std::vector<Candidate>& candidates, bool flats, DrawList& list) {
-  Rectangles rectangles;
-  std::vector<DrawGroup> curved;
-  DrawGroup whole;
-  for (const Candidate& c : candidates) {
-    const auto kind = static_cast<std::uint32_t>(c.key >> 32 & 0xffff);
-    const auto slot = static_cast<std::uint32_t>(list.items.size());
+/// Planar tiles, which hide early what lies behind them, before curved ones.
+void fill_groups(std::vector<Candidate>& candidates, const TileOptions& options, DrawList& list) {
+  Tiles tiles;
+  for (Candidate& c : candidates) {
+    c.seen.slot = static_cast<std::uint32_t>(list.items.size());
     list.items.push_back(c.item);
-    if (kind == 0) {
-      ++whole.count;  // they come first
-    } else if (!(kind & kCurvedKind)) {
-      add_planar(c, kind, slot, flats, rectangles);
-    } else {
-      if (curved.empty() || curved.back().kind != kind) curved.push_back({kind, slot, 0});
-      ++curved.back().count;
+    add_tiles(c.seen, options, tiles);
+  }
+  for (const std::uint32_t curved : {0U, kCurvedTile})
+    for (const auto& [kind, texels] : tiles.by_kind) {
+      if ((kind & kCurvedTile) != curved || texels.empty()) continue;
+      list.groups.push_back({kind, static_cast<std::uint32_t>(list.tiles.size()),
+                             static_cast<std::uint32_t>(texels.size()) / tile_texels(kind)});
+      list.tiles.insert(list.tiles.end(), texels.begin(), texels.end());
     }
-  }
-  if (whole.count) list.groups.push_back(whole);
-  for (const auto& [kind, texels] : rectangles) {
-    const auto first = static_cast<std::uint32_t>(list.rectangles.size());
-    list.groups.push_back({kind, first, static_cast<std::uint32_t>(texels.size()) / rectangle_texels(kind)});
-    list.rectangles.insert(list.rectangles.end(), texels.begin(), texels.end());
-  }
-  list.groups.insert(list.groups.end(), curved.begin(), curved.end());
+  list.first_edge = static_cast<std::uint32_t>(list.tiles.size());
+  list.tiles.insert(list.tiles.end(), tiles.edges.begin(), tiles.edges.end());
 }
 
 }  // namespace
-
-std::uint32_t rectangle_texels(std::uint32_t kind) {
-  if (!(kind & kFlatKind)) return 2;
-  const FlatPieces& room = kFlatPieces[((kind & kFlatKind) >> kFlatShift) - 1];
-  return 2 + room.lines + 2 * room.arcs;
-}
 
 std::uint32_t DrawList::primitives() const {
   auto n = static_cast<std::uint32_t>(items.size());
@@ -324,24 +218,27 @@ std::uint32_t DrawList::primitives() const {
 }
 
 void build_draw_list(const Scene::Impl& scene, const ViewRays& view,
-                     std::span<const DrawOptions::Section> sections, bool flats, DrawList& list) {
+                     std::span<const DrawOptions::Section> sections, const TileOptions& options,
+                     DrawList& list) {
   list.instances.clear();
   list.items.clear();
   list.groups.clear();
-  list.rectangles.clear();
+  list.tiles.clear();
   list.runs.clear();
   list.bound_px = 0;
   depth_range(scene, view, list);
   const SidePlanes sides = side_planes(view, sections);
   Footprints footprints(view, list.bands);
   std::vector<Candidate> candidates;
+  std::vector<PartCamera> cameras;
+  cameras.reserve(scene.instances.size());
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const SceneInstance& instance = scene.instances[i];
     const ScenePart& part = scene.parts[instance.part];
     const auto index = static_cast<std::uint32_t>(i);
     list.instances.push_back(instance_texels(instance, part, view, list.start_depth));
     if (part.primitives == 0 || !instance.visible) continue;
-    const PartCamera camera = part_camera(instance, part, view, sides);
+    const PartCamera& camera = cameras.emplace_back(part_camera(instance, part, view, sides));
     if (part.triangles) {
       list.runs.push_back({index, part.first_triangle, part.triangles,
                            instance.first_primitive + static_cast<std::uint32_t>(part.dps.size()),
@@ -351,14 +248,14 @@ void build_draw_list(const Scene::Impl& scene, const ViewRays& view,
     }
     if (!part.layer_box.empty())
       footprints.add(camera, part.layer_box.center() - part.anchor, part.layer_box.diagonal() / 2);
-    add_dps(instance, index, part, camera, view, footprints, flats, list, candidates);
+    add_dps(instance, index, part, camera, view, footprints, list, candidates);
   }
   // Equal keys keep the model's order, by the primitive's number: the same list whatever the sorting
   // algorithm.
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     return a.key != b.key ? a.key < b.key : a.item.primitive < b.item.primitive;
   });
-  fill_groups(candidates, flats, list);
+  fill_groups(candidates, options, list);
 }
 
 }  // namespace dupin

@@ -181,8 +181,8 @@ class Row {
     const ScenePart& part = scene_.parts[instance_->part];
     const std::uint32_t index = primitive - instance_->first_primitive - 1;
     const bool dp = index < part.dps.size();
-    const Box2& cell = dp ? part.dps[index].cell : exact_face_->uv_box;
-    Start s{cell.center(), cell, dp ? part.dps[index].bound : 0};
+    const Box2& cell = dp ? part.dps[index].dp.cell : exact_face_->uv_box;
+    Start s{cell.center(), cell, dp ? part.dps[index].dp.bound : 0};
     if (primitive == last_primitive_) s.guess = last_;
     return s;
   }

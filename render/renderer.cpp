@@ -92,7 +92,7 @@ Status Renderer::Impl::init(const GetProcAddress& get_proc_address) {
   instances_ = TexelBuffer(*gl, GL_RGBA32F);
   slots_ = TexelBuffer(*gl, GL_RGBA32UI);
   runs_ = TexelBuffer(*gl, GL_RGBA32UI);
-  rectangles_ = TexelBuffer(*gl, GL_RGBA32UI);
+  tiles_ = TexelBuffer(*gl, GL_RGBA32UI);
   for (GlBuffer* buffer : {&items_, &quads_, &prisms_}) *buffer = GlBuffer(*gl);
   for (GlVertexArray* array : {&item_array_, &quad_array_, &prism_array_, &empty_array_})
     *array = GlVertexArray(*gl);

@@ -36,7 +36,7 @@ enum Unit {
   kRunsUnit,
   kLayerUnit,  ///< the first of four for layers
   kCurvaturesUnit = kLayerUnit + 4,
-  kRectanglesUnit = kVerticesUnit  // not in one program
+  kTilesUnit = kVerticesUnit  // not in one program
 };
 
 /// What the shading pass writes, a picture each.
@@ -146,7 +146,7 @@ class Renderer::Impl {
   DrawList list_;
   std::vector<DrawOptions::Section> sections_;  ///< this pass's
   bool flats_ = false;                          ///< vertex shaders may hand on as much as kFlatPieces need
-  TexelBuffer instances_, slots_, runs_, rectangles_;
+  TexelBuffer instances_, slots_, runs_, tiles_;
   GlBuffer items_, quads_, prisms_;
   GlVertexArray item_array_, quad_array_, prism_array_, empty_array_;
   std::uint32_t indexed_dps_ = 0;

@@ -4,7 +4,6 @@
 
 #include "../core/parallel.h"
 #include "../nurbs/mesh_triangles.h"
-#include "draw_list.h"
 #include "layer.h"
 #include "renderer_impl.h"
 
@@ -12,32 +11,6 @@ namespace dupin {
 namespace {
 
 constexpr Color kDefaultColor{0.55F, 0.57F, 0.60F, 1};
-
-std::array<Vec3, 8> corners(const QuadricDp& dp) {
-  std::array<Vec3, 8> result;
-  for (std::size_t i = 0; i < 8; ++i) {
-    const Vec2 p = dp.footprint[i % 4];
-    result[i] = {p.x, p.y, dp.planar ? 0.0 : i < 4 ? dp.z_lo : dp.z_hi};
-  }
-  return result;
-}
-
-/// ∇F is affine in the point, so over the prism it stays in the convex hull of its values at the corners: a
-/// convex cone that holds those holds them all.
-void bound_normals(const QuadricDp& dp, const std::array<Vec3, 8>& box, DpBounds& bounds) {
-  const double side = dp.flipped ? -1 : 1;
-  std::array<Vec3, 8> normals;
-  Vec3 sum;
-  for (std::size_t i = 0; i < 8; ++i) {
-    normals[i] = normalized(quadric_gradient(dp, box[i])) * side;
-    sum += normals[i];
-  }
-  const Vec3 axis = normalized(sum);
-  double smallest = 1;
-  for (const Vec3& n : normals) smallest = std::min(smallest, dot(n, axis));
-  bounds.axis = dp.u * axis.x + dp.v * axis.y + dp.n() * axis.z;
-  if (smallest > 0) bounds.sin_cone = std::sqrt(std::max(0.0, 1 - smallest * smallest)) + 1e-6;
-}
 
 std::size_t piece_count(const QuadricDp& dp) {
   return std::size_t{dp.planes} + dp.lines + dp.arcs + dp.ellipses;
@@ -50,69 +23,17 @@ void number_faces(const std::vector<bool>& drawn, ScenePart& part) {
     if (drawn[i]) part.face_numbers[i] = part.drawn_faces++;
 }
 
-bool has_features(const PartDps& part, const QuadricDp& dp) {
-  const auto any = [](const auto& pieces, std::uint32_t first, std::uint32_t count) {
-    for (std::uint32_t i = first; i < first + count; ++i)
-      if (pieces[i].feature) return true;
-    return false;
-  };
-  return (dp.feature_sides & 63) || any(part.planes, dp.first_plane, dp.planes) ||
-         any(part.lines, dp.first_line, dp.lines) || any(part.arcs, dp.first_arc, dp.arcs) ||
-         any(part.ellipses, dp.first_ellipse, dp.ellipses);
-}
-
-/// Few of them, for curved DPs: every one is a program more. Feature edges, which free-form cells seldom
-/// have, share one.
-std::uint32_t flat_kind(const QuadricDp& dp, bool features) {
-  for (const std::uint32_t flat : {1U, 2U, 3U, 6U}) {
-    const FlatPieces& room = kFlatPieces[flat - 1];
-    if (dp.lines <= room.lines && dp.arcs <= room.arcs && (!features || flat == 6)) return flat << kFlatShift;
-  }
-  return 0;
-}
-
-/// With clip planes, which the cover knows nothing of, the footprint's box is all boundary.
-std::unique_ptr<std::array<PlanarCover, 3>> covers_of(const PartDps& part, const QuadricDp& dp) {
-  auto covers = std::make_unique<std::array<PlanarCover, 3>>();
-  for (std::size_t k = 0; k < 3; ++k) {
-    PlanarCover& cover = (*covers)[k];
-    if (dp.planes == 0) cover = planar_cover(part, dp, kCoverResolutions[k]);
-    if (dp.planes == 0) continue;
-    BoundaryRectangle& all = cover.boundary.emplace_back();
-    for (const Vec2 c : dp.footprint) all.box.add(c);
-  }
-  return covers;
-}
-
-/// See draw_list.h.
-std::uint32_t dp_kind(const PartDps& part, const QuadricDp& dp) {
-  std::uint32_t kind = (dp.planes > 0) * kPlanesKind | (dp.lines > 0) * kLinesKind |
-                       (dp.arcs > 0) * kArcsKind | (dp.ellipses > 0) * kEllipsesKind;
-  // A region without pieces that is all outside: some kind must look at `reference_inside`.
-  if (!dp.reference_inside && (kind & ~kPlanesKind) == 0) kind |= kLinesKind;
-  if (dp.planar) return kind;
-  const bool features = has_features(part, dp);
-  if (kind != 0 && (kind & (kPlanesKind | kEllipsesKind)) == 0) kind |= flat_kind(dp, features);
-  return kind | kCurvedKind | features * kFeaturesKind;
-}
-
 Status pack_dps(const PartDps& dps, ScenePart& part, SceneInfo& info, ScenePackage& package) {
-  std::vector<std::unique_ptr<std::array<PlanarCover, 3>>> covers(dps.dps.size());
+  part.dps.resize(dps.dps.size());
   parallel_for(
-      dps.dps.size(),
-      [&](std::size_t i) {
-        if (dps.dps[i].planar && dp_kind(dps, dps.dps[i]) != 0) covers[i] = covers_of(dps, dps.dps[i]);
-      },
-      16);
-  for (const QuadricDp& dp : dps.dps) {
-    DpBounds bounds = dp_bounds(dps, dp, part.anchor);
+      dps.dps.size(), [&](std::size_t i) { part.dps[i] = dp_bounds(dps, dps.dps[i], part.anchor); }, 16);
+  for (DpBounds& bounds : part.dps) {
+    const QuadricDp& dp = bounds.dp;
     bounds.record = static_cast<std::uint32_t>(package.heap.size());
     const Status status = encode_dp(dps, dp, part.anchor, part.face_numbers[dp.face], package.heap);
     if (!status.ok()) return status;
     info.clips += piece_count(dp);
-    for (const Vec3& c : corners(dp)) part.box.add(dp.origin + dp.u * c.x + dp.v * c.y + dp.n() * c.z);
-    bounds.covers = std::move(covers[part.dps.size()]);
-    part.dps.push_back(std::move(bounds));
+    for (const Vec3& c : prism_corners(dp)) part.box.add(dp.origin + dp.u * c.x + dp.v * c.y + dp.n() * c.z);
   }
   part.primitives += static_cast<std::uint32_t>(dps.dps.size());
   return {};
@@ -241,28 +162,6 @@ void place(const Model& model, const Instance& instance, const std::vector<std::
 }
 
 }  // namespace
-
-DpBounds dp_bounds(const PartDps& part, const QuadricDp& dp, const Vec3& anchor) {
-  const std::array<Vec3, 8> box = corners(dp);
-  DpBounds bounds;
-  bounds.planar = dp.planar;
-  bounds.kind = dp_kind(part, dp);
-  bounds.color_face = dp.face;
-  bounds.cell = dp.cell;
-  bounds.bound = dp.bound;
-  Box3 local;
-  for (const Vec3& c : box) local.add(c);
-  const Vec3 center = local.center();
-  for (const Vec3& c : box) bounds.radius = std::max(bounds.radius, length(c - center));
-  bounds.center = dp.origin + dp.u * center.x + dp.v * center.y + dp.n() * center.z - anchor;
-  if (dp.planar) {
-    bounds.axis = dp.flipped ? -dp.n() : dp.n();
-    bounds.sin_cone = 0;
-  } else {
-    bound_normals(dp, box, bounds);
-  }
-  return bounds;
-}
 
 Status pack_scene(const Model& model, const DpScene* dps, Scene::Impl& scene, ScenePackage& package) {
   if (dps && dps->parts.size() != model.parts.size())

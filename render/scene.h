@@ -7,31 +7,12 @@
 #include <optional>
 #include <vector>
 
+#include "dp_bounds.h"
 #include "gl_objects.h"
 #include "gpu_encode.h"
-#include "planar_cover.h"
 #include "renderer.h"
 
 namespace dupin {
-
-inline constexpr int kCoverResolutions[] = {6, 12, 24};
-
-/// What decides whether a DP is worth drawing, in the part's space relative to the anchor.
-struct DpBounds {
-  Vec3 center;
-  double radius = 0;
-  Vec3 axis;            ///< of the cone that holds every outward normal
-  double sin_cone = 2;  ///< of its half-angle, which is less than a right angle; > 1: there is no such cone
-  std::uint32_t record = 0;
-  std::uint32_t color_face = 0;  ///< index of its face in the part
-  bool planar = false;
-  /// Planar with pieces only: covers of kCoverResolutions.
-  std::unique_ptr<std::array<PlanarCover, 3>> covers;
-  std::uint32_t kind = 0;  ///< see draw_list.h; without what depends on the camera
-  Box2 cell;               ///< the DP's
-  double bound = 0;
-};
-DpBounds dp_bounds(const PartDps& part, const QuadricDp& dp, const Vec3& anchor);
 
 struct ScenePart {
   Vec3 anchor;

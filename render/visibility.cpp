@@ -9,12 +9,10 @@ constexpr std::size_t kMostSlots = (1U << 24) - 1;  // the id picture has 24 bit
 constexpr const char* kSlotOutputs[] = {"slot0", "slot1", "slot2", "slot3", "slot4",  "slot5",
                                         "slot6", "slot7", "slot8", "slot9", "slot10", "slot11"};
 
-/// What a program draws besides the ids: edges; and colors, of that kind of shading (none: -1).
+/// What a program draws besides the ids: colors, of that kind of shading (none: -1).
 struct Extras {
-  bool edges = false;
   int shading = -1;
   void add_to(ProgramText& text) const {
-    if (edges) text.defines.push_back("EDGES");
     if (shading < 0) return;
     text.defines.push_back("AT_ONCE");
     text.defines.push_back("SHADING " + std::to_string(shading));
@@ -22,33 +20,27 @@ struct Extras {
       files->insert(files->begin(), {"looks.glsl", "at_once.glsl"});
   }
   std::string key(std::string_view what) const {
-    return std::string(what) + (edges ? " edges" : "") +
-           (shading < 0 ? "" : " at once " + std::to_string(shading));
+    return std::string(what) + (shading < 0 ? "" : " at once " + std::to_string(shading));
   }
 };
 
-ProgramText dp_program(std::uint32_t kind) {
+ProgramText tile_program(std::uint32_t kind) {
   ProgramText text;
-  const bool curved = kind & kCurvedKind;
-  const std::pair<std::uint32_t, const char*> names[] = {{kPlanesKind, "PLANES"}, {kLinesKind, "LINES"},
-                                                         {kArcsKind, "ARCS"},     {kEllipsesKind, "ELLIPSES"},
-                                                         {kPrismKind, "PRISM"},   {kOneRootKind, "ONE_ROOT"}};
+  const bool curved = kind & kCurvedTile;
+  const std::pair<std::uint32_t, const char*> names[] = {{kPlanesTile, "PLANES"}, {kConicTile, "CONIC"},
+                                                         {kPiecesTile, "PIECES"}, {kEdgesTile, "EDGES"},
+                                                         {kPrismTile, "PRISM"},   {kOneRootTile, "ONE_ROOT"}};
   for (const auto& [bit, define] : names)
     if (kind & bit) text.defines.push_back(define);
-  if (kind & kFlatKind) {
-    const FlatPieces& flat = kFlatPieces[((kind & kFlatKind) >> kFlatShift) - 1];
+  text.defines.push_back("TILE_TEXELS " + std::to_string(tile_texels(kind)));
+  if (kind & kFlatTile) {
+    const FlatPieces& flat = kFlatPieces[((kind & kFlatTile) >> kFlatShift) - 1];
     text.defines.push_back("FLAT_LINES " + std::to_string(flat.lines));
     text.defines.push_back("FLAT_ARCS " + std::to_string(flat.arcs));
-    text.defines.push_back("RECTANGLE_TEXELS " + std::to_string(rectangle_texels(kind)));
   }
-  if (kind & (kPlanesKind | kLinesKind | kArcsKind | kEllipsesKind | kFlatKind))
-    text.defines.push_back("PIECES");
-  if (kind & kInsideKind) {
-    text.vertex = {"proxy.glsl", "inside.vert"};
-    text.fragment = {"id.frag"};
-    return text;
-  }
-  text.vertex = {"proxy.glsl", curved ? "curved.vert" : "planar.vert"};
+  if ((kind & kPiecesTile) && !(kind & kFlatTile))
+    for (const char* pieces : {"LINES", "ARCS", "ELLIPSES"}) text.defines.push_back(pieces);
+  text.vertex = {"proxy.glsl", "tile.glsl", curved ? "curved.vert" : "planar.vert"};
   if (curved) text.fragment.push_back("quadric.glsl");
   text.fragment.push_back("pieces.glsl");
   text.fragment.push_back(curved ? "curved.frag" : "planar.frag");
@@ -66,8 +58,8 @@ void Renderer::Impl::upload_list(const Scene::Impl& scene) {
     gl->BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(list_.items.size() * sizeof(DrawItem)),
                    list_.items.data(), GL_STREAM_DRAW);
   }
-  rectangles_.assign(list_.rectangles.data(), list_.rectangles.size() * sizeof(Texel), GL_STREAM_DRAW);
-  rectangles_.bind(kRectanglesUnit);
+  tiles_.assign(list_.tiles.data(), list_.tiles.size() * sizeof(Texel), GL_STREAM_DRAW);
+  tiles_.bind(kTilesUnit);
   std::vector<std::uint32_t> runs;
   std::uint32_t first = 0;
   for (const TriangleRun& run : list_.runs) {
@@ -131,12 +123,9 @@ void Renderer::Impl::grow_indices(std::uint32_t dps) {
 
 Status Renderer::Impl::draw_dps(const Pass& pass) {
   for (const DrawGroup& group : list_.groups) {
-    const bool edges =
-        pass.edges() && (group.curved() ? group.kind & kFeaturesKind : group.kind != kInsideKind);
-    const std::uint32_t kind = group.kind & ~kFeaturesKind;
-    const Extras extras{edges, pass.at_once ? static_cast<int>(pass.options->shading) : -1};
-    const std::string key = extras.key("dp " + std::to_string(kind));
-    ProgramText text = dp_program(kind);
+    const Extras extras{pass.at_once ? static_cast<int>(pass.options->shading) : -1};
+    const std::string key = extras.key("tile " + std::to_string(group.kind));
+    ProgramText text = tile_program(group.kind);
     extras.add_to(text);
     const auto name = program(key, text);
     if (!name) return name.status();
@@ -146,7 +135,8 @@ Status Renderer::Impl::draw_dps(const Pass& pass) {
                   static_cast<float>(pass.options->edge_width_px / 2));
     gl->Uniform1i(gl->GetUniformLocation(*name, "first"), static_cast<GLint>(group.first));
     grow_indices(group.count);
-    const bool prism = group.kind & kPrismKind;
+    gl->Uniform1i(gl->GetUniformLocation(*name, "first_edge"), static_cast<GLint>(list_.first_edge));
+    const bool prism = group.kind & kPrismTile;
     gl->BindVertexArray(prism ? prism_array_.name() : quad_array_.name());
     if (prism) gl->Enable(GL_CULL_FACE);
     gl->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(group.count * (prism ? 36 : 6)), GL_UNSIGNED_INT,
@@ -183,7 +173,7 @@ Status Renderer::Impl::use_triangle_program(const Pass& pass, const TriangleRun&
   const bool numbers = pass.options->shading == Shading::face || pass.options->shading == Shading::primitive;
   const bool own_colors =
       pass.at_once && ((run.own_colors && (!pass.options->color || pass.scene->highlights)) || numbers);
-  const Extras extras{false, pass.at_once ? static_cast<int>(pass.options->shading) : -1};
+  const Extras extras{pass.at_once ? static_cast<int>(pass.options->shading) : -1};
   ProgramText text{{"proxy.glsl", "triangle.vert"}, {"triangle.frag"}, {}, {}, {{"colors", kHeapUnit}}};
   extras.add_to(text);
   if (own_colors) text.defines.push_back("OWN_COLORS");
@@ -271,7 +261,8 @@ Status Renderer::Impl::run(const Pass& pass) {
   }
   pass.scene->colors_changed = false;
   sections_ = pass.options->sections;
-  build_draw_list(*pass.scene, pass.view, sections_, flats_, list_);
+  build_draw_list(*pass.scene, pass.view, sections_,
+                  {flats_, pass.edges(), pass.options->edge_width_px / 2 + 0.5}, list_);
   view_spread_ = pass.view.perspective ? 1.0F : 0.0F;
   upload_list(*pass.scene);
   Status status = each_layer(pass, [](Layer& layer, const LayerPass& own) { return layer.find(own); });

@@ -15,7 +15,7 @@ uniform float start, spread, start_depth;
 const int kSlotTexels = 12;
 const int kInstanceTexels = 10;
 const uint kPlanar = 1u, kFlipped = 2u, kRectangle = 4u, kPieces = 8u, kReferenceInside = 16u, kCubic = 1u << 14;
-// In a slot's meta: what is seen is the inner side.
+// In a tile's meta: what is seen is the inner side.
 const uint kFromBehind = 1u << 15;
 // Numbers in the id picture: 0 background; or slot + 1, with kSecondRoot if the ray met the quadric there, and how much of the pixel a
 // feature edge covers; or a triangle's number with kTriangle, in the two top bits; or, with both of them set, a layer and its number (layer.h).

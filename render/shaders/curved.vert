@@ -1,41 +1,25 @@
-// A curved DP: a rectangle of the picture around the prism footprint × [z lo, z hi]; or, where that reaches behind the eye, the prism
+// A tile of a curved DP: a rectangle of the picture around the prism corners × [z lo, z hi]; or, where that reaches behind the eye, the prism
 // itself, of which the far sides are drawn. Either way every pixel is tried once.
-uniform int first;
 flat out vec3 s, f, p, q;
 flat out vec4 bend, depth;  // λu λv a b | c, z lo, z hi, rounding
 flat out vec3 side0, side1, side2, side3;
 flat out uvec3 id;          // number, meta, pieces' texel
 flat out vec2 z0;           // the depth where rays start, and their reach there
+#ifdef CONIC
+flat out vec3 form_a, form_b;
+flat out vec4 form_c;       // and the sign inside
+flat out float form_near;   // what is added for rounding
+#endif
 #ifdef EDGES
 flat out float ink;
+flat out vec2 dp_ends;      // the DP's own z lo, z hi
+#ifndef PIECES
+flat out uvec4 edges;
+#endif
 #endif
 #ifdef AT_ONCE
 flat out vec3 own;
 flat out vec4 cubic;
-#endif
-#ifdef FLAT_ARCS
-flat out vec2 reference;
-flat out uvec2 flat_counts;
-#if FLAT_LINES
-flat out vec4 lines[FLAT_LINES];
-#endif
-#if FLAT_ARCS
-flat out vec4 arcs[2 * FLAT_ARCS];
-#endif
-
-// The pieces, with such that bound nothing in place of those that there are not.
-void fetch_pieces(int at, uint meta) {
-  uvec4 head = texelFetch(heap, at);
-  int line_count = int(head.x & 4095u), arc_count = int((head.x >> 12) & 4095u);
-  reference = uintBitsToFloat(head.zw);
-  flat_counts = uvec2((meta & kReferenceInside) != 0u ? 1u : 0u, (head.y & 255u) | ((head.y >> 12) & 255u) << 8);
-#if FLAT_LINES
-  for (int k = 0; k < FLAT_LINES; ++k) lines[k] = k < line_count ? heap_texel(at + 1 + k) : vec4(0.0);
-#endif
-#if FLAT_ARCS
-  for (int k = 0; k < 2 * FLAT_ARCS; ++k) arcs[k] = k < 2 * arc_count ? heap_texel(at + 1 + line_count + k) : vec4(0.0);
-#endif
-}
 #endif
 
 vec3 side_function(vec2 a, vec2 b, float rounding) {
@@ -83,14 +67,13 @@ float area(Rectangle r) {
 }
 
 // The smaller of the two rectangles around the prism's picture that are aligned with one of the footprint's first two sides.
-vec2 picture_corner(vec4 c01, vec4 c23, vec2 ends, vec4 rx, vec4 ry, vec4 rf, out float size) {
+vec2 picture_corner(vec4 c01, vec4 c23, vec2 ends, vec4 rx, vec4 ry, vec4 rf) {
   vec2 a = on_picture(c01.xy, ends.x, rx, ry, rf), b = on_picture(c01.zw, ends.x, rx, ry, rf);
   vec2 c = on_picture(c23.xy, ends.x, rx, ry, rf), d = on_picture(c23.zw, ends.x, rx, ry, rf);
   vec2 e = on_picture(c01.xy, ends.y, rx, ry, rf), f = on_picture(c01.zw, ends.y, rx, ry, rf);
   vec2 g = on_picture(c23.xy, ends.y, rx, ry, rf), h = on_picture(c23.zw, ends.y, rx, ry, rf);
   Rectangle first = around(b - a + f - e, a, b, c, d, e, f, g, h), second = around(c - b + g - f, a, b, c, d, e, f, g, h);
   if (area(second) < area(first)) first = second;
-  size = length(first.high - first.low);
   int i = gl_VertexID & 3;
   vec2 p = vec2(i == 1 || i == 2 ? first.high.x + kGrow : first.low.x - kGrow, i >= 2 ? first.high.y + kGrow : first.low.y - kGrow);
   return (p.x * first.axis + p.y * vec2(-first.axis.y, first.axis.x)) * 2.0 / picture;
@@ -98,22 +81,23 @@ vec2 picture_corner(vec4 c01, vec4 c23, vec2 ends, vec4 rx, vec4 ry, vec4 rf, ou
 #endif
 
 void main() {
-  #ifdef PRISM
-  int slot = first + (gl_VertexID >> 3), i = gl_VertexID & 3;
+#ifdef PRISM
+  Tile tile = tile_at(gl_VertexID >> 3);
 #else
-  int slot = first + (gl_VertexID >> 2);
+  Tile tile = tile_at(gl_VertexID >> 2);
 #endif
+  int slot = tile.slot, next = tile.next;
   uvec4 t0 = texelFetch(slots, slot * kSlotTexels), t1 = texelFetch(slots, slot * kSlotTexels + 1);
   vec4 t3 = slot_texel(slot, 3), t5 = slot_texel(slot, 5), t11 = slot_texel(slot, 11);
-  vec4 c01 = slot_texel(slot, 6), c23 = slot_texel(slot, 7);
+  vec4 c01 = tile.c01, c23 = tile.c23;
   s = uintBitsToFloat(t0.xyz);
   f = uintBitsToFloat(t1.xyz);
   p = slot_texel(slot, 2).xyz;
   q = t3.xyz;
   bend = slot_texel(slot, 4);
-  depth = vec4(t5.xyz, t3.w);
+  depth = vec4(t5.x, tile.ends, t3.w);
   z0 = vec2(t11.w, reach(t11.w));
-  id = uvec3(uint(slot) + 1u, t0.w, t1.w);
+  id = uvec3(uint(slot) + 1u, t0.w | (tile.from_behind ? kFromBehind : 0u), t1.w);
 #ifdef AT_ONCE
   own = own_color(floatBitsToUint(slot_texel(slot, 2).w), floatBitsToUint(t5.w), floatBitsToUint(t11.x));
   int terms = int(floatBitsToUint(t11.z));
@@ -122,20 +106,30 @@ void main() {
 #ifdef FLAT_ARCS
   fetch_pieces(int(t1.w), t0.w);
 #endif
+#ifdef CONIC
+  Conic conic = conic_at(next);
+  form_a = conic.a;
+  form_b = conic.b;
+  form_c = vec4(conic.c, conic.side);
+  form_near = t3.w * conic.steepest;
+#endif
   side0 = side_function(c01.xy, c01.zw, t3.w);
   side1 = side_function(c01.zw, c23.xy, t3.w);
   side2 = side_function(c23.xy, c23.zw, t3.w);
   side3 = side_function(c23.zw, c01.xy, t3.w);
 
   vec4 rx = slot_texel(slot, 8), ry = slot_texel(slot, 9), rf = slot_texel(slot, 10);
-  float size = 1e30;
 #ifdef PRISM
-  gl_Position = prism_corner(c01, c23, vec2(t5.y, t5.z), rx, ry, rf, t11.y);
+  gl_Position = prism_corner(c01, c23, tile.ends, rx, ry, rf, t11.y);
 #else
-  gl_Position = vec4(picture_corner(c01, c23, vec2(t5.y, t5.z), rx, ry, rf, size), 0.5, 1.0);
+  gl_Position = vec4(picture_corner(c01, c23, tile.ends, rx, ry, rf), 0.5, 1.0);
 #endif
   cut_nothing();  // curved.frag does, point by point
 #ifdef EDGES
-  ink = ink_for(size);
+  ink = ink_for(tile.dp_px);
+  dp_ends = t5.yz;
+#ifndef PIECES
+  edges = texelFetch(tiles, next);
+#endif
 #endif
 }

@@ -28,7 +28,7 @@ void meet_segment(inout Region at, float side, vec2 from_a, vec2 ab) {
 }
 #endif
 
-#if defined(EDGES) && (defined(ARCS) || defined(FLAT_ARCS))
+#ifdef EDGES
 // The conic goes on beyond the arc: what counts is in or near the triangle. One that is hardly a few pixels high is a parabola over its
 // chord: the conic's other parts are near.
 void meet_arc(inout Region at, vec2 here, vec2 p0, vec2 e1, float side, float area, float inside, float sharp, float g, vec2 gradient) {
@@ -163,8 +163,37 @@ void test_pieces(inout Region at, int texel, uint meta) {
   test_planes(at, texel, planes, int(meta >> 24));
 #endif
 }
-#else
-void test_pieces(inout Region at, int texel, uint meta) { at.inside = true; }
+#endif
+
+#if defined(EDGES) && !defined(PIECES)
+// The features in and near a tile, points relative to the DP's origin: see tiles.h.
+uniform usamplerBuffer tiles;
+uniform int first_edge;
+
+void meet_edges(inout Region at, uvec4 run) {
+  int next = first_edge + int(run.x);
+  vec2 here = at.p.xy;
+  for (int i = 0; i < int(run.y); ++i) {
+    vec4 l = uintBitsToFloat(texelFetch(tiles, next + i));
+    vec2 ab = l.zw - l.xy;
+    meet_segment(at, cross2(ab, here - l.xy), here - l.xy, ab);
+  }
+  next += int(run.y);
+  for (int i = 0; i < int(run.z); ++i) {
+    vec4 a01 = uintBitsToFloat(texelFetch(tiles, next + 2 * i)), a2w = uintBitsToFloat(texelFetch(tiles, next + 2 * i + 1));
+    vec2 p0 = a01.xy, e0 = a2w.xy - a01.zw, e1 = p0 - a2w.xy, e2 = a01.zw - p0, d = here - a01.zw;
+    float b0 = cross2(e0, d), b2 = cross2(e2, d), side = cross2(here - p0, e1);
+    vec2 turned = a2w.z * (e0 * b2 + e2 * b0) + 2.0 * side * e1;
+    meet_arc(at, here, p0, e1, side, cross2(e0, e1), min(b0, b2), a2w.z, a2w.z * b0 * b2 - side * side, vec2(-turned.y, turned.x));
+  }
+  next += 2 * int(run.z);
+  for (int i = 0; i < int(run.w); ++i) {
+    vec4 e = uintBitsToFloat(texelFetch(tiles, next + 2 * i));
+    float myy = uintBitsToFloat(texelFetch(tiles, next + 2 * i + 1).x);
+    vec2 from = here - e.xy, q = vec2(e.z * from.x + e.w * from.y, e.w * from.x + myy * from.y);
+    meet_edge(at, 1.0 - dot(q, q), vec3(-2.0 * (e.z * q.x + e.w * q.y), -2.0 * (e.w * q.x + myy * q.y), 0.0));
+  }
+}
 #endif
 
 #ifdef EDGES

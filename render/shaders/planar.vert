@@ -1,36 +1,28 @@
-// A planar DP: its footprint itself is drawn, or a rectangle of it. What is covered follows from the footprint's sides as linear functions of (X, Y):
-// with (x, y, 1)·W linear in the picture's coordinates, so is n·(x, y)·W + d·W.
-uniform int first;
-#ifdef PIECES
-uniform usamplerBuffer rectangles;  // see draw_list.h
-#ifndef RECTANGLE_TEXELS
-#define RECTANGLE_TEXELS 2
-#endif
-#endif
+// A tile of a planar DP is drawn itself. What is covered follows from its sides as linear functions of (X, Y): with (x, y, 1)·W linear in
+// the picture's coordinates, so is n·(x, y)·W + d·W, and a conic is a quadratic form.
 flat out vec3 side0, side1, side2, side3;
 flat out uint id;
-#ifdef EDGES
-flat out vec4 no_edge;  // 0 for the sides that are feature edges, much for others
-flat out float ink;
+#ifdef AT_ONCE
+flat out vec3 normal, own;
+#endif
+#ifdef CONIC
+flat out vec3 form_a, form_b;
+flat out vec4 form_c, form_w;  // c and the sign inside; W and what is added for rounding
+#endif
+#if defined(PIECES) || defined(EDGES)
+flat out vec3 row_x, row_y, row_w;
 #endif
 #ifdef PIECES
-flat out vec3 row_x, row_y, row_w;
 flat out ivec2 pieces;  // texel, slot's meta
 flat out float rounding;
 #endif
-#ifdef FLAT_ARCS
-flat out vec2 reference;
-flat out uvec2 flat_counts;
-#if FLAT_LINES
-flat out vec4 lines[FLAT_LINES];
+#ifdef EDGES
+flat out float ink;
+#ifdef PIECES
+flat out vec4 no_edge;  // 0 for the sides that are feature edges, much for others
+#else
+flat out uvec4 edges;
 #endif
-#if FLAT_ARCS
-flat out vec4 arcs[2 * FLAT_ARCS];
-#endif
-#endif
-
-#ifdef AT_ONCE
-flat out vec3 normal, own;
 #endif
 
 // In pixels; a corner that is there twice has no side.
@@ -45,20 +37,15 @@ vec3 side_function(vec2 a, vec2 b, mat3 rows, float rounding) {
 
 void main() {
   int i = gl_VertexID & 3;
-#ifdef PIECES
-  int rectangle = first + (gl_VertexID >> 2) * RECTANGLE_TEXELS;
-  uvec4 head = texelFetch(rectangles, rectangle + 1);
-  int slot = int(head.x & 0x7fffffffu);
-#else
-  int slot = first + (gl_VertexID >> 2);
-#endif
+  Tile tile = tile_at(gl_VertexID >> 2);
+  int slot = tile.slot, next = tile.next;
   uvec4 t0 = texelFetch(slots, slot * kSlotTexels), t1 = texelFetch(slots, slot * kSlotTexels + 1);
   vec3 s = uintBitsToFloat(t0.xyz), f = uintBitsToFloat(t1.xyz), p = slot_texel(slot, 2).xyz;
   vec4 t3 = slot_texel(slot, 3);
   vec4 rx = slot_texel(slot, 8), ry = slot_texel(slot, 9), rf = slot_texel(slot, 10);
   float z0 = rf.w;
   vec3 q = t3.xyz, a = reach(z0) * p, b = reach(z0) * q;
-  vec4 c01 = slot_texel(slot, 6), c23 = slot_texel(slot, 7);
+  vec4 c01 = tile.c01, c23 = tile.c23;
 
   // The ray meets z = 0 in (o.xy d.z − d.xy o.z) / d.z; the product of what is linear in X, Y in o and d cancels, as they are
   // parallel or one of them is zero. W = ∓d.z has the sign that is positive where the ray comes from the viewer's side.
@@ -79,22 +66,24 @@ void main() {
 #ifdef AT_ONCE
   planar_look(slot, normal, own);
 #endif
-#ifdef PIECES
+#ifdef CONIC
+  Conic conic = conic_at(next);
+  form_a = rows * conic.a;
+  form_b = rows * conic.b;
+  form_c = vec4(rows * conic.c, conic.side);
+  form_w = vec4(rows[2], widen * conic.steepest);
+#endif
+#if defined(PIECES) || defined(EDGES)
   row_x = rows[0];
   row_y = rows[1];
   row_w = rows[2];
+#endif
+#ifdef PIECES
   pieces = ivec2(t1.w, t0.w);
   rounding = widen;
 #endif
 #ifdef FLAT_ARCS
-  reference = uintBitsToFloat(head.zw);
-  flat_counts = uvec2(head.x >> 31, head.y >> 16);
-#if FLAT_LINES
-  for (int k = 0; k < FLAT_LINES; ++k) lines[k] = uintBitsToFloat(texelFetch(rectangles, rectangle + 2 + k));
-#endif
-#if FLAT_ARCS
-  for (int k = 0; k < 2 * FLAT_ARCS; ++k) arcs[k] = uintBitsToFloat(texelFetch(rectangles, rectangle + 2 + FLAT_LINES + k));
-#endif
+  fetch_pieces(int(t1.w), t0.w);
 #endif
 
   // Both sides that meet in the corner are moved out by kGrow pixels.
@@ -103,16 +92,16 @@ void main() {
   jacobian(c, rx, ry, rf, ju, jv);
   float extent = length(c23.xy - c01.xy) + length(c23.zw - c01.zw);
 #ifdef EDGES
+  ink = ink_for(tile.dp_px);
+#ifdef PIECES
   uint features = t0.w >> 8;
   no_edge = vec4((features & 1u) != 0u ? 0.0 : 1e30, (features & 2u) != 0u ? 0.0 : 1e30,
                  (features & 4u) != 0u ? 0.0 : 1e30, (features & 8u) != 0u ? 0.0 : 1e30);
-  ink = ink_for(max(length(ju * (c23.x - c01.x) + jv * (c23.y - c01.y)), length(ju * (c23.z - c01.z) + jv * (c23.w - c01.w))));
-#endif
-#ifdef PIECES
-  gl_Position = rectangle_corner(uintBitsToFloat(texelFetch(rectangles, rectangle)), i, kGrow, rx, ry, rf);
 #else
+  edges = texelFetch(tiles, next);
+#endif
+#endif
   c += miter(to, from, min(kGrow * vec2(way_per_pixel(ju, jv, to), way_per_pixel(ju, jv, from)), vec2(extent)));
   vec3 at = vec3(c, 1.0);
   gl_Position = to_clip(vec2(dot(rx.xyw, at), dot(ry.xyw, at)), dot(rf.xyw, at));
-#endif
 }

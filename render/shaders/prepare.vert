@@ -1,10 +1,9 @@
 // Transform feedback: one vertex a visible DP, from its record, its placement and the camera to its slot.
-layout(location = 0) in uvec4 item;  // record, instance with kFromBehindItem, primitive, color
+layout(location = 0) in uvec4 item;  // record, instance, primitive, color
 
 flat out uvec4 slot0, slot1, slot2, slot3, slot4, slot5, slot6, slot7, slot8, slot9, slot10, slot11;
 
-const uint kFromBehindItem = 0x80000000u;
-int instance() { return int(item.y & ~kFromBehindItem) * kInstanceTexels; }
+int instance() { return int(item.y) * kInstanceTexels; }
 vec3 instance_texel(int i) { return texelFetch(instances, instance() + i).xyz; }
 
 // The rotation of a unit quaternion of which the three smallest parts are stored.
@@ -23,7 +22,7 @@ uvec4 words(vec3 v, uint w) { return uvec4(floatBitsToUint(v), w); }
 void main() {
   int at = int(item.x);
   uvec4 first = texelFetch(heap, at), second = texelFetch(heap, at + 1);
-  uint meta = first.w | ((item.y & kFromBehindItem) != 0u ? kFromBehind : 0u);
+  uint meta = first.w;
   vec3 origin = uintBitsToFloat(first.xyz);
   mat3 m = frame(uintBitsToFloat(second.xyz), (meta >> 6) & 3u);
 

@@ -78,20 +78,6 @@ float way_per_pixel(vec2 ju, vec2 jv, vec2 tangent) {
   return length(ju * tangent.x + jv * tangent.y) / max(abs(cross2(ju, jv)), 1e-30);
 }
 
-// A corner of a rectangle in a DP's plane, whose sides are moved out by `grow` pixels, though not by more than its size.
-vec4 rectangle_corner(vec4 ends, int i, float grow, vec4 rx, vec4 ry, vec4 rf) {
-  vec2 outwards = vec2(i == 1 || i == 2 ? 1.0 : -1.0, i >= 2 ? 1.0 : -1.0);
-  vec2 c = vec2(i == 1 || i == 2 ? ends.z : ends.x, i >= 2 ? ends.w : ends.y), ju, jv;
-  jacobian(c, rx, ry, rf, ju, jv);
-  vec2 way = grow * vec2(way_per_pixel(ju, jv, vec2(0.0, 1.0)), way_per_pixel(ju, jv, vec2(1.0, 0.0)));
-  c += outwards * min(way, ends.zw - ends.xy);
-  vec3 at = vec3(c, 1.0);
-  return to_clip(vec2(dot(rx.xyw, at), dot(ry.xyw, at)), dot(rf.xyw, at));
-}
-
-// Depth, times this, is farther by rounding.
-const float kBehind = 1.0 - 4e-6;
-
 #ifdef AT_ONCE
 // A planar DP's normal in view space and its color.
 void planar_look(int slot, out vec3 normal, out vec3 own) {
