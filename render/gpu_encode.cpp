@@ -1,6 +1,8 @@
 #include "gpu_encode.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace dupin {
 namespace {
@@ -13,6 +15,16 @@ float value(std::uint32_t bits) {
 }
 Texel texel(double x, double y, double z, double w) {
   return {bits(x), bits(y), bits(z), bits(w)};
+}
+
+/// 16 bits each, ±kMostTilt.
+std::uint32_t tilt_word(const std::array<double, 2>& tilt) {
+  std::uint32_t word = 0;
+  for (int i = 0; i < 2; ++i) {
+    const long n = std::lround(std::clamp(tilt[static_cast<std::size_t>(i)] / kMostTilt, -1.0, 1.0) * 32767);
+    word |= (static_cast<std::uint32_t>(n) & 0xFFFFu) << 16 * i;
+  }
+  return word;
 }
 
 /// The unit quaternion (x, y, z, w) of the rotation whose columns are u, v, n, by its largest part
@@ -132,7 +144,8 @@ Status encode_dp(const PartDps& part, const QuadricDp& dp, const Vec3& anchor, s
   if (!dp.planar) {
     texels.push_back(texel(dp.lambda_u, dp.lambda_v, dp.a, dp.b));
     texels.push_back(texel(dp.c, dp.z_lo, dp.z_hi, 0));
-    if (dp.cubic != std::array<double, 4>{}) {
+    texels.back()[3] = tilt_word(dp.tilt);
+    if (dp.cubic != std::array<double, 4>{} || dp.tilt != std::array<double, 2>{}) {
       meta |= kCubic;
       texels.push_back(texel(dp.cubic[0], dp.cubic[1], dp.cubic[2], dp.cubic[3]));
     }

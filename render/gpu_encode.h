@@ -7,7 +7,7 @@
 //   2      footprint: x lo, y lo, x hi, y hi; or, unless kRectangle, corners 0 and 1, and a texel with
 //   corners 2 and 3 then, unless kPlanar:
 //          λu            λv            a             b
-//          c             z lo          z hi          0
+//          c             z lo          z hi          the normal's tilt: 16 bits each, ±kMostTilt
 //          c0 c1 c2 c3 of the normal's cubic terms, if kCubic
 //   then, if kPieces:
 //          counts: lines | arcs << 12 | ellipses << 24; the same of those that are feature edges; reference

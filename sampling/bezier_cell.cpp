@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 
+#include "small_solve.h"
+
 namespace dupin {
 namespace {
 
@@ -49,21 +51,6 @@ Middle middle(const Vec4* b, int count, int degree) {
   if (count == 2) return {(b[0] + b[1]) * 0.5, b[1] - b[0], {}};
   return {(b[0] + b[1] * 2 + b[2]) * 0.25, (b[2] - b[0]) * (0.5 * degree),
           (b[0] - b[1] * 2 + b[2]) * (static_cast<double>(degree) * (degree - 1))};
-}
-
-/// The first `unknowns` of the normal equations g x = r, the others 0, with a ridge relative to each one's
-/// own size.
-Vec3 solve_ridge(const double g[3][3], const double r[3], int unknowns) {
-  double m[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, y[3] = {}, scale[3] = {};
-  for (int k = 0; k < unknowns; ++k) scale[k] = g[k][k] > 0 ? 1 / std::sqrt(g[k][k]) : 0;
-  for (int k = 0; k < unknowns; ++k) {
-    y[k] = r[k] * scale[k];
-    for (int l = 0; l < unknowns; ++l) m[k][l] = g[k][l] * scale[k] * scale[l] + (k == l ? 1e-10 : 0);
-  }
-  const Vec3 x =
-      inverse(Mat3{{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}}) *
-      Vec3{y[0], y[1], y[2]};
-  return {x.x * scale[0], x.y * scale[1], x.z * scale[2]};
 }
 
 /// g x = r (r in the last column; the lower triangle of g is enough), by Cholesky with a ridge relative to
@@ -166,20 +153,41 @@ CollapsedSides collapsed_sides(const BezierPatch& patch) {
       single([&](int k) { return patch.pole(k, 0); }, p), single([&](int k) { return patch.pole(k, q); }, p)};
 }
 
-void split_patch(const BezierPatch& patch, bool along_u, BezierPatch& first, BezierPatch& second) {
-  first = patch;
-  second = patch;
-  const int degree = along_u ? patch.degree_u : patch.degree_v,
-            lines = along_u ? patch.degree_v : patch.degree_u;
-  const int stride = along_u ? patch.degree_v + 1 : 1, line_stride = along_u ? 1 : patch.degree_v + 1;
+namespace {
+
+/// The patch over [0, at] and what is left, along one parameter.
+void cut_patch(BezierPatch& rest, bool along_u, double at, BezierPatch& first) {
+  first = rest;
+  const int degree = along_u ? rest.degree_u : rest.degree_v, lines = along_u ? rest.degree_v : rest.degree_u;
+  const int stride = along_u ? rest.degree_v + 1 : 1, line_stride = along_u ? 1 : rest.degree_v + 1;
   for (int l = 0; l <= lines; ++l) {
     Vec4* a = first.poles.data() + l * line_stride;
-    Vec4* b = second.poles.data() + l * line_stride;
+    Vec4* b = rest.poles.data() + l * line_stride;
     for (int k = 1; k <= degree; ++k) {
-      for (int i = 0; i <= degree - k; ++i) b[i * stride] = (b[i * stride] + b[(i + 1) * stride]) * 0.5;
+      for (int i = 0; i <= degree - k; ++i)
+        b[i * stride] = b[i * stride] * (1 - at) + b[(i + 1) * stride] * at;
       a[k * stride] = b[0];
     }
   }
+}
+
+}  // namespace
+
+std::vector<BezierPatch> split_patch(const BezierPatch& patch, int along_u, int along_v) {
+  std::vector<BezierPatch> pieces;
+  BezierPatch rest = patch, strip, piece;
+  for (int i = along_u; i > 0; --i) {
+    if (i > 1)
+      cut_patch(rest, true, 1.0 / i, strip);
+    else
+      strip = std::move(rest);
+    for (int j = along_v; j > 1; --j) {
+      cut_patch(strip, false, 1.0 / j, piece);
+      pieces.push_back(piece);
+    }
+    pieces.push_back(std::move(strip));
+  }
+  return pieces;
 }
 
 BezierPatch grown_patch(const BezierPatch& patch, const CellMargins& m) {
@@ -267,7 +275,8 @@ void CellFitter::fit_third_order(double tolerance, QuadricDp& dp) {
     f_.c[i] -= dp.a * xz_.c[i] + dp.b * yz_.c[i] + 0.5 * dp.c * zz_.c[i];
 }
 
-bool CellFitter::certify(double tolerance, double normal_tolerance, CellFit& out) {
+bool CellFitter::certify(const CellRequest& request, CellFit& out) {
+  const double tolerance = request.tolerance;
   QuadricDp& dp = out.dp;
   const double value_bound = bernstein::magnitude(f_) / (least_w_ * least_w_);
   const double ax = std::max(-box_.lo.x, box_.hi.x), ay = std::max(-box_.lo.y, box_.hi.y),
@@ -275,11 +284,11 @@ bool CellFitter::certify(double tolerance, double normal_tolerance, CellFit& out
   // Between surface and quadric, which lies at most `tolerance` above or below it.
   const double gz = 1 - std::abs(dp.a) * ax - std::abs(dp.b) * ay - std::abs(dp.c) * (az + tolerance);
   if (!(gz >= kLeastSheet)) return false;
-  out.bound = value_bound / gz;
+  out.bound = value_bound / gz + request.beyond.value;
   out.quadric_decides = !(out.bound <= tolerance);
   if (out.quadric_decides) return false;
   dp.z_lo = box_.lo.z - out.bound, dp.z_hi = box_.hi.z + out.bound;
-  return certify_normals(normal_tolerance, gz, out);
+  return certify_normals(request, gz, out);
 }
 
 /// Ranges of the derivative of A/W^power along one parameter, over the cell. Along a collapsed side that
@@ -395,7 +404,18 @@ void CellFitter::fit_cubic(QuadricDp& dp) {
   }
 }
 
-bool CellFitter::certify_normals(double normal_tolerance, double gz, CellFit& out) {
+/// By how much a normal turns where the surface differs from the patch by `beyond`: (|Ds| |St| + |Ss| |Dt|) /
+/// |Ss × St| in the chart that turns at most this much.
+double CellFitter::turned_beyond(const Remainder& beyond, double twisted) const {
+  // beyond's parameters run over [−1,1], these over [0,1].
+  const double s = 2 * beyond.ds * std::hypot(inverse_[0][0], inverse_[0][1]),
+               t = 2 * beyond.dt * std::hypot(inverse_[1][0], inverse_[1][1]);
+  const double turn = (s + t) / (1 - twisted);
+  return turn < 0.5 ? 2 * turn : 4;
+}
+
+bool CellFitter::certify_normals(const CellRequest& request, double gz, CellFit& out) {
+  const double normal_tolerance = request.normal_tolerance;
   QuadricDp& dp = out.dp;
   const double twisted = twist();
   if (!(twisted <= kMostTwist)) return false;
@@ -413,24 +433,24 @@ bool CellFitter::certify_normals(double normal_tolerance, double gz, CellFit& ou
     return std::hypot(std::abs(dp.a) / gz + std::abs(dp.c) * fx / (gz * gz),
                       std::abs(dp.b) / gz + std::abs(dp.c) * fy / (gz * gz));
   };
-  const double over = 1 / ((1 - twisted) * gz);
-  out.normal_bound = gradient_bound(f_, 2) * over + out.bound * drift();
+  const double over = 1 / ((1 - twisted) * gz), beyond = turned_beyond(request.beyond, twisted);
+  out.normal_bound = gradient_bound(f_, 2) * over + out.bound * drift() + beyond;
   if (out.normal_bound <= normal_tolerance) return true;
   fit_cubic(dp);
-  out.normal_bound = gradient_bound(cubic_rest_, 3) * over + out.bound * drift();
+  out.normal_bound = gradient_bound(cubic_rest_, 3) * over + out.bound * drift() + beyond;
   return out.normal_bound <= normal_tolerance;
 }
 
-CellFit CellFitter::fit(const BezierPatch& cell, double tolerance, double normal_tolerance,
-                        const CellMargins& wanted) {
+CellFit CellFitter::fit(const BezierPatch& cell, const CellRequest& request) {
   CellFit out;
   const CollapsedSides collapsed = collapsed_sides(cell);
-  out.margins = wanted;
+  out.margins = request.margins;
   const bool point[4] = {collapsed.v0, collapsed.u1, collapsed.v1, collapsed.u0};
   for (int k = 0; k < 4; ++k)
     if (point[k]) out.margins.side[k] = 0;
   const BezierPatch grown = grown_patch(cell, out.margins);
-  auto longer_side = [&] {
+  const auto cut = [&out](bool along_u) { out.pieces_u = along_u ? 2 : 1, out.pieces_v = along_u ? 1 : 2; };
+  const auto longer_side = [&] {
     double u = 0, v = 0;
     for (int i = 0; i <= cell.degree_u; ++i)
       for (int j = 0; j <= cell.degree_v; ++j) {
@@ -443,19 +463,19 @@ CellFit CellFitter::fit(const BezierPatch& cell, double tolerance, double normal
       }
     return u >= v;
   };
-  out.split_u = longer_side();
+  cut(longer_side());
   if (!place(cell, out)) return out;
   load(grown, out.dp);
   if (!(least_w_ > 0)) return out;
-  fit_third_order(tolerance, out.dp);
-  out.valid = set_up_normals(collapsed, out.margins) && certify(tolerance, normal_tolerance, out);
+  fit_third_order(request.tolerance, out.dp);
+  out.valid = set_up_normals(collapsed, out.margins) && certify(request, out);
   if (!out.valid) {
     // Where the quadric is not close enough, along the parameter in which F∘S varies more; where the cell is
     // bent or twisted too much to be looked at that way, along its longer side.
     if (!out.quadric_decides) return out;
     bernstein::derivative_u(f_, tmp_), bernstein::derivative_v(f_, d_);
     const double u = bernstein::magnitude(tmp_), v = bernstein::magnitude(d_);
-    if (u > 1.3 * v || v > 1.3 * u) out.split_u = u > v;
+    if (u > 1.3 * v || v > 1.3 * u) cut(u > v);
     return out;
   }
   const int p = cell.degree_u, q = cell.degree_v;

@@ -6,18 +6,10 @@
 
 #include "../nurbs/bezier.h"
 #include "bernstein.h"
+#include "cell_model.h"
 #include "quadric_dp.h"
 
 namespace dupin {
-
-/// A cell is a patch over its own [0,1]². Its certificate holds on the cell grown by a part of its width on
-/// every side (not across a collapsed one): neighbouring DPs overlap there, so that no crack opens between
-/// their sheets.
-inline constexpr double kCellMargin = 0.04;
-/// For the sides v = 0, u = 1, v = 1, u = 0.
-struct CellMargins {
-  double side[4] = {kCellMargin, kCellMargin, kCellMargin, kCellMargin};
-};
 
 /// Which sides of a patch are a single point.
 struct CollapsedSides {
@@ -38,34 +30,48 @@ struct BorderPoles {
 
 /// What could be proved about a cell's DP.
 struct CellFit {
-  bool valid = false;   ///< the cell is a graph over the DP's tangent plane and the quadric one sheet above
-                        ///< it; the rest holds
-  bool split_u = true;  ///< if the cell has to be split: along u or along v
-  bool quadric_decides = false;  ///< it is one graph, only not close enough to the quadric
-  double bound = 0;              ///< largest distance between quadric and surface, along the DP's normal
+  bool valid = false;  ///< the cell is a graph over the DP's tangent plane and the quadric one sheet above
+                       ///< it; the rest holds
+  int pieces_u = 1, pieces_v = 1;  ///< if the cell has to be split: into how many, one of them above 1
+  double excess = 0;               ///< what asks for the split, over what is allowed; 0: not known
+  bool quadric_decides = false;    ///< it is one graph, only not close enough to the quadric
+  double bound = 0;                ///< largest distance between quadric and surface, along the DP's normal
   double normal_bound = 0;
-  QuadricDp dp;                            ///< frame, quadric, z-range
-  CellMargins margins;                     ///< as asked for, 0 at collapsed sides
+  QuadricDp dp;         ///< frame, quadric, z-range
+  CellMargins margins;  ///< as asked for, 0 at collapsed sides
+  /// Largest |∇s|, |∇t| in the DP's (x,y), of the cell's own parameters; 0 where a side is collapsed.
+  double gradient_s = 0, gradient_t = 0;
+  double overrun[4] = {0, 0, 0, 0};        ///< how far the footprint reaches over the cell's sides
   double margin_needed[4] = {0, 0, 0, 0};  ///< for whoever makes the footprint: what its sides would take
   /// The grown cell's poles along its border, in the DP's (x,y): sides v = 0, u = 1, v = 1, u = 0; the cell's
-  /// own likewise.
+  /// own likewise. The grown border may be off by `border_slack`.
   BorderPoles border[4], grown_border[4];
+  double border_slack = 0;
+};
+
+/// What a cell's DP is to meet.
+struct CellRequest {
+  double tolerance = 0, normal_tolerance = 0;
+  CellMargins margins;
+  /// What the surface may differ by from the patch carried on into its margins: across knots, over the grown
+  /// cell.
+  Remainder beyond;
 };
 
 /// Fits and certifies in one go, reusing its buffers from cell to cell.
 class CellFitter {
  public:
   /// Stops early, with valid = false, once a bound is known to exceed the tolerances.
-  CellFit fit(const BezierPatch& cell, double tolerance, double normal_tolerance,
-              const CellMargins& margins = {});
+  CellFit fit(const BezierPatch& cell, const CellRequest& request);
 
  private:
   bool place(const BezierPatch& cell, CellFit& out);
   void load(const BezierPatch& grown, const QuadricDp& dp);
   void fit_third_order(double tolerance, QuadricDp& dp);
   bool set_up_normals(const CollapsedSides& collapsed, const CellMargins& margins);
-  bool certify(double tolerance, double normal_tolerance, CellFit& out);
-  bool certify_normals(double normal_tolerance, double gz, CellFit& out);
+  bool certify(const CellRequest& request, CellFit& out);
+  bool certify_normals(const CellRequest& request, double gz, CellFit& out);
+  double turned_beyond(const Remainder& beyond, double twisted) const;
   void fit_cubic(QuadricDp& dp);
   double twist();
   double gradient_bound(const bernstein::Net& net, int power);
@@ -83,8 +89,8 @@ class CellFitter {
   const bernstein::Side *divide_u_ = nullptr, *divide_v_ = nullptr;  // what ∂/∂u, ∂/∂v are divided by
 };
 
-/// Sub-cells by de Casteljau at one half.
-void split_patch(const BezierPatch& patch, bool along_u, BezierPatch& first, BezierPatch& second);
+/// Equal pieces by de Casteljau, along_u × along_v of them, v running faster.
+std::vector<BezierPatch> split_patch(const BezierPatch& patch, int along_u, int along_v);
 BezierPatch grown_patch(const BezierPatch& patch, const CellMargins& margins);
 /// Box of the dehomogenised poles.
 Box3 poles_box(const BezierPatch& patch);

@@ -54,29 +54,6 @@ Vec2 at(const Box2& box, double s, double t) {
   return {box.lo.x + box.size().x * s, box.lo.y + box.size().y * t};
 }
 
-BezierPatch interpolate(const Surface& surface, const Box2& box) {
-  static const Matrix interpolation = make_interpolation();
-  std::array<std::array<Vec3, kNodes>, kNodes> values, half{};
-  for (int i = 0; i < kNodes; ++i)
-    for (int j = 0; j < kNodes; ++j) {
-      const Vec2 uv = at(box, node(i), node(j));
-      values[i][j] = point_at(surface, uv.x, uv.y);
-    }
-  for (int i = 0; i < kNodes; ++i)
-    for (int j = 0; j < kNodes; ++j)
-      for (int k = 0; k < kNodes; ++k) half[i][j] += values[k][j] * interpolation[i][k];
-  BezierPatch patch;
-  patch.degree_u = patch.degree_v = kDegree;
-  patch.domain = box;
-  for (int i = 0; i < kNodes; ++i)
-    for (int j = 0; j < kNodes; ++j) {
-      Vec3 p{};
-      for (int k = 0; k < kNodes; ++k) p += half[i][k] * interpolation[j][k];
-      patch.poles.push_back({p.x, p.y, p.z, 1});
-    }
-  return patch;
-}
-
 Vec3 patch_normal(const BezierPatch& patch, double s, double t) {
   constexpr double h = 1e-4;
   return normalized(cross(point_at(patch, s + h, t) - point_at(patch, s - h, t),
@@ -89,7 +66,7 @@ class Fitter {
       : surface_(surface), tolerance_(tolerance), normal_tolerance_(normal_tolerance) {}
 
   bool fit(const Box2& box, int depth) {
-    FittedPatch fitted{interpolate(surface_, box)};
+    FittedPatch fitted{interpolating_patch([&](Vec2 uv) { return point_at(surface_, uv.x, uv.y); }, box)};
     for (const Vec4& pole : fitted.patch.poles)
       if (!std::isfinite(pole.x + pole.y + pole.z)) return false;
     measure(box, fitted);
@@ -141,6 +118,26 @@ std::vector<Box2> smooth_pieces(const Surface& surface, const Box2& region) {
 }
 
 }  // namespace
+
+BezierPatch interpolating_patch(const std::function<Vec3(Vec2)>& value, const Box2& box) {
+  static const Matrix interpolation = make_interpolation();
+  std::array<std::array<Vec3, kNodes>, kNodes> values, half{};
+  for (int i = 0; i < kNodes; ++i)
+    for (int j = 0; j < kNodes; ++j) values[i][j] = value(at(box, node(i), node(j)));
+  for (int i = 0; i < kNodes; ++i)
+    for (int j = 0; j < kNodes; ++j)
+      for (int k = 0; k < kNodes; ++k) half[i][j] += values[k][j] * interpolation[i][k];
+  BezierPatch patch;
+  patch.degree_u = patch.degree_v = kDegree;
+  patch.domain = box;
+  for (int i = 0; i < kNodes; ++i)
+    for (int j = 0; j < kNodes; ++j) {
+      Vec3 p{};
+      for (int k = 0; k < kNodes; ++k) p += half[i][k] * interpolation[j][k];
+      patch.poles.push_back({p.x, p.y, p.z, 1});
+    }
+  return patch;
+}
 
 std::vector<FittedPatch> fitted_patches(const Surface& surface, const Box2& region,
                                         const ToleranceField& tolerance, double normal_tolerance) {

@@ -5,12 +5,16 @@
 #ifndef DUPIN_SAMPLING_FITTED_PATCHES_H
 #define DUPIN_SAMPLING_FITTED_PATCHES_H
 
+#include <functional>
 #include <vector>
 
 #include "../nurbs/bezier.h"
 #include "tolerance_field.h"
 
 namespace dupin {
+
+/// The biquintic that interpolates a function of (u,v) at Chebyshev nodes of a box.
+BezierPatch interpolating_patch(const std::function<Vec3(Vec2)>& at, const Box2& box);
 
 struct FittedPatch {
   BezierPatch patch;  ///< biquintic, u and v affine in its parameters

@@ -61,6 +61,9 @@ Vec3 to_common_point(const Vec3& p, const Side& a, const Side& b, double most) {
   return length(d) <= most ? d : Vec3{};
 }
 
+/// The parabola through three points of the unit ball stays within this.
+constexpr double kBetweenThree = 1.25;
+
 /// How far faces with these normals and unit outward directions reach for their sheets to overlap, as a
 /// multiple of what both together may be off. Where the other is not known they are taken to meet at a right
 /// angle.
@@ -290,7 +293,7 @@ void PartEdges::close_between(std::uint32_t edge, std::span<const Use> used,
       for (std::size_t u = 0; u < used.size(); ++u) {
         ArcReach& reach = reach_[used[u].trim][k];
         reach.by[static_cast<std::size_t>(i)] = r.outward[u];
-        reach.own = std::max(reach.own, r.own);
+        reach.own = std::max(reach.own, kBetweenThree * r.own);
       }
     }
   }

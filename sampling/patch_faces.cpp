@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "../core/parallel.h"
 #include "bezier_cell.h"
 #include "chart_region.h"
 #include "fitted_patches.h"
+#include "graph_cell.h"
+#include "knot_strips.h"
+#include "merged_patches.h"
 
 namespace dupin {
 namespace {
@@ -19,11 +23,16 @@ constexpr double kBesideEdges = 0.9;
 
 /// A cell smaller than this part of the tolerance is not worth a fit: it is drawn flat.
 constexpr double kSpeck = 0.5;
+/// What the margin of a thin cell has to leave for the overlap with its neighbours, in terms of its width.
+constexpr double kThinOverlap = 0.02;
+/// Of the tolerance: what a merged patch may differ from the surface.
+constexpr double kMergedShare = 0.3;
+/// Blocks of knot spans that one thread merges at a time: at most so many on a side.
+constexpr int kMostTile = 32, kLeastTile = 4;
+/// A surface whose normal turns at once by more than this part of what is allowed has a crease.
+constexpr double kCrease = 0.5;
 /// Patches that one thread divides at a time.
 constexpr std::size_t kPatchesPerTask = 8;
-
-/// A cell is grown by at most this part of itself to make room for its curved sides' chords.
-constexpr double kMostMargin = 0.35;
 
 struct Cell {
   BezierPatch patch;
@@ -31,47 +40,84 @@ struct Cell {
   std::vector<const FaceArc*> arcs;
   bool known = false, inside = false;  ///< no trim in it: wholly in or out
   int depth = 0;
+  double excess = 0;  ///< of the cell that this is a piece of, where it was cut in one direction only
+  bool cut_u = false;
 };
+/// A cut that leaves more than this of what asked for it went in the wrong direction.
+constexpr double kNoProgress = 0.7;
 
 Box2 shifted(const Box2& box, double du, double dv) {
   return {box.lo + Vec2{du, dv}, box.hi + Vec2{du, dv}};
 }
 
+/// By side: whether the surface goes on across it.
+using Seams = std::array<bool, 4>;
+Seams seams_of(const PatchFaceInput& in) {
+  Seams seams{};
+  const Box2& box = in.boundary.uv_box;
+  const Vec2 eps = box.size() * 1e-6;
+  for (const Loop& loop : in.face.loops)
+    for (const Trim& trim : loop) {
+      if (!is_inner_seam(in.face, trim)) continue;
+      const Edge& edge = in.part.edges[trim.edge];
+      const Vec2 p = point_at(trim.pcurve, (edge.t0 + edge.t1) / 2);
+      seams[0] |= std::abs(p.y - box.lo.y) <= eps.y, seams[1] |= std::abs(p.x - box.hi.x) <= eps.x;
+      seams[2] |= std::abs(p.y - box.hi.y) <= eps.y, seams[3] |= std::abs(p.x - box.lo.x) <= eps.x;
+    }
+  return seams;
+}
+
 class PatchFace {
  public:
-  PatchFace(const PatchFaceInput& in, PartDps& out)
+  PatchFace(const PatchFaceInput& in, const Seams& seams, const KnotStrips* strips, PartDps& out)
       : in_(in),
         out_(out),
         surface_(in.part.surfaces[in.face.surface]),
         period_u_(period_u(surface_)),
-        period_v_(period_v(surface_)) {
-    for (const Loop& loop : in.face.loops)
-      for (const Trim& trim : loop)
-        if (is_inner_seam(in.face, trim)) note_seam(trim);
+        period_v_(period_v(surface_)),
+        seam_(seams),
+        strips_(strips) {}
+
+  std::vector<const FaceArc*> all_arcs() const {
+    std::vector<const FaceArc*> arcs;
+    for (const FaceLoop& loop : in_.boundary.loops)
+      for (const FaceArc& arc : loop.arcs) arcs.push_back(&arc);
+    return arcs;
   }
 
-  void divide_patch(const FittedPatch& fitted) {
+  void divide_patch(const FittedPatch& fitted, std::size_t index, std::vector<const FaceArc*> arcs) {
     fitted_position_ = fitted.position_error, fitted_normal_ = fitted.normal_error;
-    root_ = fitted.patch;
+    root_ = fitted.patch, root_index_ = index;
+    for (auto& strip : strip_cache_) strip.reset();
     Cell cell;
     cell.patch = fitted.patch;
-    for (const FaceLoop& loop : in_.boundary.loops)
-      for (const FaceArc& arc : loop.arcs) cell.arcs.push_back(&arc);
+    cell.arcs = std::move(arcs);
     divide(cell);
+  }
+
+  /// Blocks of knot spans that one DP can do for, or else their halves.
+  void divide_block(const std::vector<FittedPatch>& patches, const SpanBlock& b,
+                    std::vector<const FaceArc*> arcs) {
+    const int columns = b.u1 - b.u0, rows = b.v1 - b.v0;
+    if (columns == 1 && rows == 1) {
+      const auto i = static_cast<std::size_t>(strips_->index(b.u0, b.v0));
+      return divide_patch(patches[i], i, std::move(arcs));
+    }
+    Cell cell;
+    cell.arcs = std::move(arcs);
+    if (emit_block(b, cell)) return;
+    SpanBlock first = b, second = b;
+    if (rows == 1 || (columns > 1 && is_longer_along_u(b)))
+      first.u1 = second.u0 = (b.u0 + b.u1) / 2;
+    else
+      first.v1 = second.v0 = (b.v0 + b.v1) / 2;
+    divide_block(patches, first, cell.arcs);
+    divide_block(patches, second, std::move(cell.arcs));
   }
 
   int made() const { return made_; }
 
  private:
-  void note_seam(const Trim& trim) {
-    const Edge& edge = in_.part.edges[trim.edge];
-    const Vec2 p = point_at(trim.pcurve, (edge.t0 + edge.t1) / 2);
-    const Box2& box = in_.boundary.uv_box;
-    const Vec2 eps = box.size() * 1e-6;
-    seam_[0] |= std::abs(p.y - box.lo.y) <= eps.y, seam_[1] |= std::abs(p.x - box.hi.x) <= eps.x;
-    seam_[2] |= std::abs(p.y - box.hi.y) <= eps.y, seam_[3] |= std::abs(p.x - box.lo.x) <= eps.x;
-  }
-
   Box2 uv_of(const Box2& own) const {
     return {{patch_to_surface_u(root_, own.lo.x), patch_to_surface_v(root_, own.lo.y)},
             {patch_to_surface_u(root_, own.hi.x), patch_to_surface_v(root_, own.hi.y)}};
@@ -111,43 +157,200 @@ class PatchFace {
     const bool speck =
         box.diagonal() <= allowed * (cell.arcs.empty() ? 1 : kBesideEdges) || cell.depth >= kMaxDepth;
     if (box.diagonal() <= kSpeck * allowed) return emit_speck(cell, uv, box, {});
-    CellFit fit =
-        fitter_.fit(cell.patch, tolerance - fitted_position_, in_.normal_tolerance - fitted_normal_);
-    if (fit.valid && emit(cell, uv, fit)) return;
+    CellRequest request{tolerance - fitted_position_, in_.normal_tolerance - fitted_normal_, {}, {}};
+    CellFit fit = fit_cell(cell.patch, request);
+    if (fit.valid && emit(cell, uv, request, fit)) return;
     if (fit.valid && widen_margins(fit)) {
-      CellFit wider = fitter_.fit(cell.patch, tolerance - fitted_position_,
-                                  in_.normal_tolerance - fitted_normal_, fit.margins);
-      if (wider.valid && emit(cell, uv, wider)) return;
+      request.margins = fit.margins;
+      CellFit wider = fit_cell(cell.patch, request);
+      if (wider.valid && emit(cell, uv, request, wider)) return;
     }
     if (speck) return emit_speck(cell, uv, box, fit);
-    split(cell, fit.split_u);
+    if (fit.valid) cut_bent_sides(fit);
+    turn_useless_cut(cell, fit);
+    split(cell, fit);
   }
 
-  void split(Cell& cell, bool along_u) {
-    Cell first, second;
-    split_patch(cell.patch, along_u, first.patch, second.patch);
-    first.own = second.own = cell.own;
-    (along_u ? first.own.hi.x : first.own.hi.y) = along_u ? cell.own.center().x : cell.own.center().y;
-    (along_u ? second.own.lo.x : second.own.lo.y) = along_u ? cell.own.center().x : cell.own.center().y;
-    for (Cell* half : {&first, &second}) {
-      half->arcs = cell.arcs;
-      half->known = cell.known, half->inside = cell.inside;
-      half->depth = cell.depth + 1;
-    }
+  /// Along the sides that are too curved for their chords; where that is not what is wrong, both ways.
+  static void cut_bent_sides(CellFit& fit) {
+    const double* needed = fit.margin_needed;
+    const bool along_u = std::max(needed[0], needed[2]) > kMostMargin,
+               along_v = std::max(needed[1], needed[3]) > kMostMargin;
+    fit.pieces_u = along_u || !along_v ? 2 : 1, fit.pieces_v = along_v || !along_u ? 2 : 1;
+  }
+
+  static void turn_useless_cut(const Cell& cell, CellFit& fit) {
+    if (!(cell.excess > 0) || !(fit.excess > kNoProgress * cell.excess)) return;
+    fit.pieces_u = cell.cut_u ? 1 : std::max(fit.pieces_u, 2);
+    fit.pieces_v = cell.cut_u ? std::max(fit.pieces_v, 2) : 1;
+  }
+
+  CellFit fit_cell(const BezierPatch& patch, const CellRequest& request) {
+    const CollapsedSides c = collapsed_sides(patch);
+    const bool collapsed = c.u0 || c.u1 || c.v0 || c.v1;
+    if (collapsed || patch.degree_u > kMostModelDegree || patch.degree_v > kMostModelDegree)
+      return fitter_.fit(patch, request);
+    return fit_graph(patch, request);
+  }
+
+  void split(Cell& cell, const CellFit& fit) {
+    const int along_u = fit.pieces_u, along_v = fit.pieces_v;
+    std::vector<BezierPatch> patches = split_patch(cell.patch, along_u, along_v);
     cell.patch.poles.clear();
-    divide(first);
-    divide(second);
+    const Vec2 size = cell.own.size();
+    for (int i = 0; i < along_u; ++i)
+      for (int j = 0; j < along_v; ++j) {
+        Cell piece;
+        piece.patch = std::move(patches[static_cast<std::size_t>(i * along_v + j)]);
+        piece.own = {{cell.own.lo.x + size.x * i / along_u, cell.own.lo.y + size.y * j / along_v},
+                     {i + 1 < along_u ? cell.own.lo.x + size.x * (i + 1) / along_u : cell.own.hi.x,
+                      j + 1 < along_v ? cell.own.lo.y + size.y * (j + 1) / along_v : cell.own.hi.y}};
+        piece.arcs = cell.arcs;
+        piece.known = cell.known, piece.inside = cell.inside;
+        if (along_u == 1 || along_v == 1) piece.excess = fit.excess, piece.cut_u = along_u > 1;
+        piece.depth = cell.depth + (along_u * along_v > 2 ? 2 : 1);
+        divide(piece);
+      }
   }
 
-  bool emit(const Cell& cell, const Box2& uv, CellFit& fit) {
-    QuadricDp& dp = fit.dp;
+  bool emit(const Cell& cell, const Box2& uv, const CellRequest& request, CellFit& fit) {
+    return make_footprint(uv, fit) && add_strips(cell, uv, request, fit) && emit_fit(cell, uv, fit);
+  }
+
+  bool emit_fit(const Cell& cell, const Box2& uv, const CellFit& fit) {
+    QuadricDp dp = fit.dp;
     dp.face = in_.face_index;
     dp.cell = uv;
     dp.bound = fit.bound + fitted_position_, dp.normal_bound = fit.normal_bound + fitted_normal_;
     dp.sampled_bound = fitted_position_ > 0 && !std::holds_alternative<BsplineSurface>(surface_.geometry);
     dp.flipped = in_.face.reversed;
-    if (make_footprint(uv, fit)) return emit_region(cell, uv, dp);
-    return cell.arcs.empty() && emit_bordered(cell, fit);
+    return emit_region(cell, uv, dp);
+  }
+
+  const BezierPatch& span(int column, int row) const {
+    return strips_->patch(static_cast<std::size_t>(strips_->index(column, row)));
+  }
+
+  bool is_longer_along_u(const SpanBlock& b) const {
+    const auto corner = [&](bool u, bool v) {
+      const BezierPatch& p = span(u ? b.u1 - 1 : b.u0, v ? b.v1 - 1 : b.v0);
+      return point_at(p, u ? 1 : 0, v ? 1 : 0);
+    };
+    return distance(corner(false, false), corner(true, false)) +
+               distance(corner(false, true), corner(true, true)) >=
+           distance(corner(false, false), corner(false, true)) +
+               distance(corner(true, false), corner(true, true));
+  }
+
+  /// True if nothing is left to do for the block: one DP was enough, or none is needed.
+  bool emit_block(const SpanBlock& b, Cell& cell) {
+    const Box2 uv{{strips_->column_start(b.u0), strips_->row_start(b.v0)},
+                  {strips_->column_start(b.u1), strips_->row_start(b.v1)}};
+    filter_arcs(cell, uv);
+    if (cell.known && !cell.inside) return true;
+    Box3 box;
+    for (int c = b.u0; c < b.u1; ++c)
+      for (int r = b.v0; r < b.v1; ++r) {
+        const Box3 one = poles_box(span(c, r));
+        box.add(one.lo), box.add(one.hi);
+      }
+    const double allowed = in_.tolerance.at(box);
+    if (std::isinf(allowed)) return true;
+    allowed_ = allowed, fitted_position_ = fitted_normal_ = 0;
+    if (box.diagonal() <= kSpeck * allowed) return emit_speck_block(b, cell, uv, box), true;
+    const double tolerance = allowed * (!cell.known ? kTrimTolerance : cell.arcs.empty() ? 1 : kBesideEdges);
+    std::optional<MergedPatch> merged = merged_patch(*strips_, b, kMergedShare * tolerance);
+    if (!merged) return false;
+    root_ = cell.patch = std::move(merged->patch);
+    // The fit's parameters run over [−1,1], margins included.
+    const double half = (1 + 2 * kMergedMargin) / 2;
+    const Remainder& d = merged->beyond;
+    CellFit fit =
+        fit_cell(cell.patch, {tolerance, in_.normal_tolerance, {}, {d.value, d.ds * half, d.dt * half}});
+    if (!fit.valid || !make_footprint(uv, fit)) return false;
+    const double gradient[2] = {fit.gradient_t, fit.gradient_s};
+    for (int k = 0; k < 4; ++k)
+      if (!on_border(k, uv) && !(fit.overrun[k] * gradient[k % 2] <= merged->margin[k])) return false;
+    return emit_fit(cell, uv, fit);
+  }
+
+  /// By its corners; the box says what that may be off.
+  void emit_speck_block(const SpanBlock& b, Cell& cell, const Box2& uv, const Box3& box) {
+    BezierPatch& flat = cell.patch;
+    flat.degree_u = flat.degree_v = 1, flat.domain = uv;
+    flat.poles = {span(b.u0, b.v0).poles.front(), span(b.u0, b.v1 - 1).pole(0, span(b.u0, b.v1 - 1).degree_v),
+                  span(b.u1 - 1, b.v0).pole(span(b.u1 - 1, b.v0).degree_u, 0),
+                  span(b.u1 - 1, b.v1 - 1).poles.back()};
+    root_ = flat;
+    emit_speck(cell, uv, box, {});
+  }
+
+  const SideStrip& strip(int side, int next_to = -1) {
+    // Of the patch over `side`, its own side `next_to`: two such for each.
+    const int slot = next_to < 0 ? side : 4 + 2 * side + (next_to > 1 ? 1 : 0);
+    std::optional<SideStrip>& cached = strip_cache_[static_cast<std::size_t>(slot)];
+    if (cached) return *cached;
+    const int other = strips_->neighbour(root_index_, side);
+    if (next_to < 0)
+      cached = strips_->strip(root_index_, side);
+    else
+      cached = other < 0 ? SideStrip{} : strips_->strip(static_cast<std::size_t>(other), next_to);
+    return *cached;
+  }
+
+  /// What lies over the root's sides is the neighbouring patches, not this one carried on: added to the
+  /// bounds. Not over creases, where the surface ends as at an edge, nor over patches that are thinner than
+  /// the tolerance.
+  bool add_strips(const Cell& cell, const Box2& uv, const CellRequest& request, CellFit& fit) {
+    if (!strips_ || !(fit.gradient_s > 0)) return true;
+    const bool at_border[4] = {cell.own.lo.y <= 0, cell.own.hi.x >= 1, cell.own.hi.y >= 1,
+                               cell.own.lo.x <= 0};
+    // Of the root's parameters.
+    const double gradient[2] = {fit.gradient_t * cell.own.size().y, fit.gradient_s * cell.own.size().x};
+    double sigma[4] = {};
+    for (int k = 0; k < 4; ++k)
+      if (at_border[k] && !on_border(k, uv) && gradient[k % 2] * allowed_ < 1)
+        sigma[k] = fit.overrun[k] * gradient[k % 2];
+    double off = 0, turn = 0;
+    for (int k = 0; k < 4; ++k) {
+      if (!(sigma[k] > 0)) continue;
+      const double across = gradient[k % 2], along = gradient[(k + 1) % 2];
+      const double beside = std::max(sigma[(k + 1) % 4], sigma[(k + 3) % 4]);
+      add_strip(strip(k), sigma[k], fit.overrun[k], across, along, stretch(k, beside), off, turn);
+      if (k % 2 == 1)  // in the corner, the neighbour's own neighbour
+        for (int l : {0, 2})
+          if (sigma[l] > 0)
+            add_strip(strip(k, l), sigma[l], fit.overrun[l], along, across * speed_over(k),
+                      stretch(l, sigma[k]), off, turn);
+    }
+    fit.bound += off, fit.dp.z_lo -= off, fit.dp.z_hi += off;
+    fit.normal_bound += turn < 0.5 ? std::asin(turn / (1 - turn)) : 4;
+    return fit.bound <= request.tolerance && fit.normal_bound <= request.normal_tolerance;
+  }
+
+  /// A side's bounds hold along it; so much more where the polynomials are carried on in that direction.
+  double stretch(int side, double beside) const {
+    const int degree = side % 2 == 1 ? root_.degree_v : root_.degree_u;
+    return std::pow(1 + 2 * beside, root_.rational ? 2 * degree : degree);
+  }
+
+  void add_strip(const SideStrip& strip, double sigma, double overrun, double across, double along,
+                 double stretch, double& off, double& turn) const {
+    if (strip.smooth) return;
+    const Remainder r = strip.at(sigma) * stretch;
+    if (strip.crease() * across > kCrease * in_.normal_tolerance) {
+      off += std::min(r.value, overrun);
+      return;
+    }
+    off += r.value, turn += r.ds * across + r.dt * along;
+  }
+
+  /// The root's width over the neighbour's.
+  double speed_over(int side) const {
+    const int other = strips_->neighbour(root_index_, side);
+    return other < 0
+               ? 1
+               : root_.domain.size().x / strips_->patch(static_cast<std::size_t>(other)).domain.size().x;
   }
 
   /// Whether the cell's side lies on the face's own border, where trims end it: there it need not match a
@@ -215,10 +418,16 @@ class PatchFace {
         for (Vec2 p : fit.border[k]) own = std::min(own, dot(p - a, out));
         fit.margin_needed[k] = fit.margins.side[k] * (bulge + wanted - own) /
                                std::max(reach - own, 1e-3 * size * fit.margins.side[k]);
-        if (reach - bulge < fit.bound + 1e-5 * size) reached = false;
+        reach -= fit.border_slack;
+        // A cell that is thinner than its bound cannot overlap by it: its neighbours do.
+        const double needed = std::min(fit.bound + 1e-5 * size, kThinOverlap * (bulge - own));
+        if (!(reach - bulge >= needed)) reached = false;
         overlap_width = std::min(wanted, reach - bulge);
       }
       lines[k] = {a + out * (bulge + overlap_width), out};
+      double depth = 0;
+      for (Vec2 p : fit.border[k]) depth = std::min(depth, dot(p - a, out));
+      fit.overrun[k] = bulge + overlap_width - depth;
     }
     if (!reached) return false;
     for (int k = 0; k < 4; ++k)
@@ -276,65 +485,6 @@ class PatchFace {
     return true;
   }
 
-  /// A cell whose sides are too curved for straight ones: its border, half-way out to where the certificate
-  /// reaches, as pieces.
-  bool emit_bordered(const Cell& cell, CellFit& fit) {
-    constexpr double m = kCellMargin / 2;
-    const CollapsedSides collapsed = collapsed_sides(cell.patch);
-    const double s0 = collapsed.u0 ? 0 : -m, s1 = collapsed.u1 ? 1 : 1 + m, t0 = collapsed.v0 ? 0 : -m,
-                 t1 = collapsed.v1 ? 1 : 1 + m;
-    ChartProjector chart(fit.dp);
-    auto at = [&](double s, double t) { return chart.to_chart(point_at(cell.patch, s, t)); };
-    ChartPieces pieces;
-    Box2 box;
-    for (int k = 0; k < 4; ++k) {
-      auto on_side = [&](double f) {
-        switch (k) {
-          case 0:
-            return at(s0 + (s1 - s0) * f, t0);
-          case 1:
-            return at(s1, t0 + (t1 - t0) * f);
-          case 2:
-            return at(s1 + (s0 - s1) * f, t1);
-          default:
-            return at(s0, t1 + (t0 - t1) * f);
-        }
-      };
-      if ((k == 0 && collapsed.v0) || (k == 1 && collapsed.u1) || (k == 2 && collapsed.v1) ||
-          (k == 3 && collapsed.u0))
-        continue;
-      if (!add_side(on_side, inner_distance(cell, k, chart), pieces, box)) return false;
-    }
-    const Vec2 margin = box.size() * 1e-4;
-    const Box2 b{box.lo - margin, box.hi + margin};
-    fit.dp.footprint = {b.lo, Vec2{b.hi.x, b.lo.y}, b.hi, Vec2{b.lo.x, b.hi.y}};
-    return count(fit.dp, pieces, {0, 0}, true);
-  }
-
-  /// How far the widened side is from the cell's own, at its middle: what a piece may deviate by a part of.
-  static double inner_distance(const Cell& cell, int side, const ChartProjector& chart) {
-    constexpr double m = kCellMargin / 2;
-    const Vec2 own[4] = {{0.5, 0}, {1, 0.5}, {0.5, 1}, {0, 0.5}},
-               wide[4] = {{0.5, -m}, {1 + m, 0.5}, {0.5, 1 + m}, {-m, 0.5}};
-    return length(chart.to_chart(point_at(cell.patch, own[side].x, own[side].y)) -
-                  chart.to_chart(point_at(cell.patch, wide[side].x, wide[side].y)));
-  }
-
-  template <class OnSide>
-  static bool add_side(const OnSide& on_side, double room, ChartPieces& pieces, Box2& box) {
-    const Vec2 a = on_side(0), q1 = on_side(0.25), mid = on_side(0.5), q3 = on_side(0.75), b = on_side(1);
-    const Vec2 p1 = mid * 2 - (a + b) * 0.5;
-    auto quadratic = [&](double f) { return a * ((1 - f) * (1 - f)) + p1 * (2 * f * (1 - f)) + b * (f * f); };
-    if (std::max(length(quadratic(0.25) - q1), length(quadratic(0.75) - q3)) > 0.3 * room) return false;
-    for (Vec2 p : {a, p1, b}) box.add(p);
-    const Vec2 chord = b - a;
-    if (std::abs(cross(chord, p1 - a)) <= 1e-6 * dot(chord, chord))
-      pieces.lines.push_back({a, b, false});
-    else
-      pieces.arcs.push_back({a, p1, b, 1, false});
-    return true;
-  }
-
   /// Smaller than the tolerance, and still no quadric could be proved right (a singular corner): a flat piece
   /// will do.
   void emit_speck(const Cell& cell, const Box2& uv, const Box3& box, const CellFit& fit) {
@@ -364,7 +514,11 @@ class PatchFace {
   PartDps& out_;
   const Surface& surface_;
   const double period_u_, period_v_;
-  bool seam_[4] = {false, false, false, false};
+  const Seams& seam_;
+  const KnotStrips* strips_;  ///< null: the patches are no neighbours of each other
+  std::size_t root_index_ = 0;
+  std::array<std::optional<SideStrip>, 12>
+      strip_cache_;  ///< the root's sides; the sides next to them of its neighbours
   BezierPatch root_;
   CellFitter fitter_;
   double fitted_position_ = 0, fitted_normal_ = 0;  ///< what an interpolated patch is off already
@@ -389,23 +543,54 @@ std::vector<FittedPatch> patches_of(const PatchFaceInput& in, PatchFaceResult& r
   return patches;
 }
 
+std::optional<KnotStrips> strips_of(const PatchFaceInput& in, const Seams& seams, bool rational,
+                                    const std::vector<FittedPatch>& patches) {
+  if (!rational) return std::nullopt;
+  std::vector<const BezierPatch*> all;
+  for (const FittedPatch& p : patches) all.push_back(&p.patch);
+  const bool whole = in.boundary.loops.empty();
+  const Surface& surface = in.part.surfaces[in.face.surface];
+  return KnotStrips(std::move(all), seams[1] || seams[3] || (whole && period_u(surface) > 0),
+                    seams[0] || seams[2] || (whole && period_v(surface) > 0));
+}
+
+std::vector<SpanBlock> tiles_of(const KnotStrips& grid) {
+  const int columns = grid.columns(), rows = grid.rows(),
+            tile = std::clamp(std::max(columns, rows) / 4, kLeastTile, kMostTile);
+  std::vector<SpanBlock> tiles;
+  for (int c = 0; c < columns; c += tile)
+    for (int r = 0; r < rows; r += tile)
+      tiles.push_back({c, std::min(c + tile, columns), r, std::min(r + tile, rows)});
+  return tiles;
+}
+
 }  // namespace
 
 PatchFaceResult make_patch_face(const PatchFaceInput& in, PartDps& out) {
   PatchFaceResult result;
   const std::vector<FittedPatch> patches = patches_of(in, result);
-  const std::size_t tasks = (patches.size() + kPatchesPerTask - 1) / kPatchesPerTask;
+  if (patches.empty()) return result;
+  const Seams seams = seams_of(in);
+  const std::optional<KnotStrips> strips = strips_of(in, seams, result.rational, patches);
+  const KnotStrips* grid = strips ? &*strips : nullptr;
+  std::vector<SpanBlock> tiles;
+  if (grid && is_mergeable(*grid)) tiles = tiles_of(*grid);
+  const std::size_t tasks =
+      tiles.empty() ? (patches.size() + kPatchesPerTask - 1) / kPatchesPerTask : tiles.size();
   std::vector<PartDps> parts(tasks);
   std::vector<int> made(tasks);
   // In parallel over groups of patches; joined in their order, so that the threads' number shows nowhere.
   parallel_for(tasks, [&](std::size_t t) {
-    PatchFace face(in, parts[t]);
-    for (std::size_t i = t * kPatchesPerTask; i < std::min(patches.size(), (t + 1) * kPatchesPerTask); ++i)
-      face.divide_patch(patches[i]);
+    PatchFace face(in, seams, grid, parts[t]);
+    if (!tiles.empty())
+      face.divide_block(patches, tiles[t], face.all_arcs());
+    else
+      for (std::size_t i = t * kPatchesPerTask; i < std::min(patches.size(), (t + 1) * kPatchesPerTask); ++i)
+        face.divide_patch(patches[i], i, face.all_arcs());
     made[t] = face.made();
   });
   for (std::size_t t = 0; t < tasks; ++t) {
-    append(parts[t], out);
+    append(std::move(parts[t]), out);
     result.dps += made[t];
   }
   return result;

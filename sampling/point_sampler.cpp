@@ -122,18 +122,31 @@ class PartPointSampler {
   std::atomic<bool> stop_{false};
 };
 
-/// A quadric DP's origin; its footprint need not be symmetric about it.
-DifferentialPoint point_of(const QuadricDp& dp) {
-  DifferentialPoint point;
-  point.position = dp.origin;
-  point.u = dp.u;
-  point.v = dp.flipped ? -dp.v : dp.v;
+/// A quadric DP approximates over its cell: at the cell's middle the surface's own position, frame and
+/// curvatures are taken, where it has them.
+void place_point(const QuadricDp& dp, const Surface& surface, DifferentialPoint& point) {
+  const Vec2 uv = dp.cell.center();
   const double side = dp.flipped ? -1 : 1;
-  point.lambda_u = side * dp.lambda_u;
-  point.lambda_v = side * dp.lambda_v;
+  point.position = dp.origin;
+  point.u = dp.u, point.v = dp.v * side;
+  point.lambda_u = side * dp.lambda_u, point.lambda_v = side * dp.lambda_v;
+  if (dp.exact) return;
+  const Curvature curvature = principal_curvature(surface, uv.x, uv.y, uv);
+  const Vec3 position = point_at(surface, uv.x, uv.y);
+  if (curvature.kind == Curvature::Kind::undefined || !is_finite(position)) return;
+  point.position = position;
+  point.u = curvature.d1, point.v = curvature.d2 * side;
+  point.lambda_u = side * curvature.k1, point.lambda_v = side * curvature.k2;
+}
+
+/// Its rectangle holds the DP's footprint, which need not be symmetric.
+DifferentialPoint point_of(const QuadricDp& dp, const Surface& surface) {
+  DifferentialPoint point;
+  place_point(dp, surface, point);
   for (const Vec2 c : dp.footprint) {
-    point.half_u = std::max(point.half_u, std::abs(c.x));
-    point.half_v = std::max(point.half_v, std::abs(c.y));
+    const Vec3 corner = dp.origin + dp.u * c.x + dp.v * c.y - point.position;
+    point.half_u = std::max(point.half_u, std::abs(dot(corner, point.u)));
+    point.half_v = std::max(point.half_v, std::abs(dot(corner, point.v)));
   }
   if (std::abs(point.lambda_u) < std::abs(point.lambda_v)) {
     std::swap(point.lambda_u, point.lambda_v);
@@ -156,10 +169,12 @@ Result<PointScene> certified_points(const Model& model, const PointSamplingOptio
   auto dps = sample_quadric_dps(model, sampling);
   if (!dps) return dps.status();
   PointScene scene;
-  for (PartDps& part : dps->parts) {
+  for (std::size_t i = 0; i < dps->parts.size(); ++i) {
     PartPoints& out = scene.parts.emplace_back();
-    for (const QuadricDp& dp : part.dps) out.points.push_back(point_of(dp));
-    out.skipped = std::move(part.skipped);
+    const Part& part = model.parts[i];
+    for (const QuadricDp& dp : dps->parts[i].dps)
+      out.points.push_back(point_of(dp, part.surfaces[part.faces[dp.face].surface]));
+    out.skipped = std::move(dps->parts[i].skipped);
   }
   return scene;
 }

@@ -19,9 +19,9 @@ enum class PointMethod {
   /// of the
   /// cell's border.
   adaptive,
-  /// The origins of the quadric DPs of sampler.h within `tolerance`, with their certified bounds; rectangles
-  /// hold
-  /// their footprints.
+  /// At the middles of the cells of sampler.h's quadric DPs within `tolerance`, with the DPs' certified
+  /// bounds
+  /// (the origins of those that are the surface itself); rectangles hold their footprints.
   certified,
 };
 inline constexpr std::string_view kPointMethodNames[] = {"uniform", "adaptive", "certified"};

@@ -58,15 +58,19 @@ struct EllipsePiece {
   bool feature = false;
 };
 
+/// Of a normal's correction; what its storage has room for.
+inline constexpr double kMostTilt = 0.25;
+
 struct QuadricDp {
   Vec3 origin;                  ///< in the part's space
   Vec3 u{1, 0, 0}, v{0, 1, 0};  ///< unit, perpendicular
   double lambda_u = 0, lambda_v = 0;
   double a = 0, b = 0, c = 0;
-  /// Third-order terms of the shading normal alone: the surface drawn is F = 0, the normal drawn there is
-  /// ∇F − ∇C with C = c0·x³ + c1·x²y + c2·xy² + c3·y³. All 0 where the quadric's own normal is close enough.
+  /// Terms of the shading normal alone: the surface drawn is F = 0, the normal drawn there is ∇F − ∇C with
+  /// C = t0·x + t1·y + c0·x³ + c1·x²y + c2·xy² + c3·y³. All 0 where the quadric's own normal is close enough.
   std::array<double, 4> cubic{0, 0, 0, 0};
-  std::array<Vec2, 4> footprint;  ///< convex, counter-clockwise; a corner may be repeated
+  std::array<double, 2> tilt{0, 0};  ///< |t| <= kMostTilt
+  std::array<Vec2, 4> footprint;     ///< convex, counter-clockwise; a corner may be repeated
   double z_lo = 0, z_hi = 0;
   /// Bits 0–3: footprint side i (from corner i to i+1) is a feature edge; bit 4: z_lo, bit 5: z_hi.
   std::uint8_t feature_sides = 0;
@@ -106,8 +110,9 @@ inline Vec3 quadric_gradient(const QuadricDp& d, const Vec3& p) {
 /// The normal drawn at a point of the DP's frame, towards the side of n; not normalised.
 inline Vec3 drawn_normal(const QuadricDp& d, const Vec3& p) {
   const auto& c = d.cubic;
-  return quadric_gradient(d, p) - Vec3{3 * c[0] * p.x * p.x + 2 * c[1] * p.x * p.y + c[2] * p.y * p.y,
-                                       c[1] * p.x * p.x + 2 * c[2] * p.x * p.y + 3 * c[3] * p.y * p.y, 0};
+  return quadric_gradient(d, p) -
+         Vec3{d.tilt[0] + 3 * c[0] * p.x * p.x + 2 * c[1] * p.x * p.y + c[2] * p.y * p.y,
+              d.tilt[1] + c[1] * p.x * p.x + 2 * c[2] * p.x * p.y + 3 * c[3] * p.y * p.y, 0};
 }
 
 /// One part's DPs and the pieces that bound them.
@@ -125,6 +130,7 @@ struct PartDps {
 
 /// Appends another part's (or face's) DPs and pieces.
 void append(const PartDps& from, PartDps& to);
+void append(PartDps&& from, PartDps& to);
 
 /// Whether a point p of the DP's frame, on F = 0, is drawn: the region's three tests, as the shader makes
 /// them.

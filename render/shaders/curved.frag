@@ -21,6 +21,7 @@ layout(location = 0) out uint out_id;
 #ifdef AT_ONCE
 flat in vec3 own;
 flat in vec4 cubic;
+flat in uint tilt;
 layout(location = 1) out vec4 out_color;
 #endif
 
@@ -137,7 +138,7 @@ void main() {
 #endif
 #ifdef AT_ONCE
   vec3 gradient = quadric_gradient(bend, depth.x, x);
-  gradient.xy -= cubic_gradient(cubic, x.xy);
+  gradient.xy -= cubic_gradient(cubic, unpacked_tilt(tilt), x.xy);
   out_color = color_at_once(normalize(to_view(gradient, p, q, f)), own, at, edge);
 #endif
   float z = z0.x + t;

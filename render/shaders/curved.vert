@@ -20,6 +20,7 @@ flat out uvec4 edges;
 #ifdef AT_ONCE
 flat out vec3 own;
 flat out vec4 cubic;
+flat out uint tilt;
 #endif
 
 vec3 side_function(vec2 a, vec2 b, float rounding) {
@@ -102,6 +103,7 @@ void main() {
   own = own_color(floatBitsToUint(slot_texel(slot, 2).w), floatBitsToUint(t5.w), floatBitsToUint(t11.x));
   int terms = int(floatBitsToUint(t11.z));
   cubic = terms > 0 ? heap_texel(terms) : vec4(0.0);
+  tilt = terms > 0 ? texelFetch(heap, terms - 1).w : 0u;
 #endif
 #ifdef FLAT_ARCS
   fetch_pieces(int(t1.w), t0.w);

@@ -24,8 +24,13 @@ Roots quadric_roots(vec4 bend, float c, vec3 o, vec3 d) {
   return r;
 }
 
-// The gradient of the normal's own third-order terms, to be taken from the quadric's.
-vec2 cubic_gradient(vec4 k, vec2 p) {
-  return vec2(3.0 * k.x * p.x * p.x + 2.0 * k.y * p.x * p.y + k.z * p.y * p.y,
+// Two 16-bit numbers, ±kMostTilt.
+vec2 unpacked_tilt(uint word) {
+  return vec2(int(word << 16u) >> 16, int(word) >> 16) * (0.25 / 32767.0);
+}
+
+// The gradient of the normal's own terms, of first and third order, to be taken from the quadric's.
+vec2 cubic_gradient(vec4 k, vec2 tilt, vec2 p) {
+  return tilt + vec2(3.0 * k.x * p.x * p.x + 2.0 * k.y * p.x * p.y + k.z * p.y * p.y,
               k.y * p.x * p.x + 2.0 * k.z * p.x * p.y + 3.0 * k.w * p.y * p.y);
 }

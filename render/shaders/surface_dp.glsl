@@ -23,7 +23,8 @@ Surface surface_at(uint number, vec2 at) {
   vec3 normal_form = g;
   uint cubic = t11.z;
   if (cubic != 0u) {
-    normal_form.xy -= cubic_gradient(heap_texel(int(cubic)), x.xy);
+    vec2 tilt = unpacked_tilt(texelFetch(heap, int(cubic) - 1).w);
+    normal_form.xy -= cubic_gradient(heap_texel(int(cubic)), tilt, x.xy);
   }
   vec3 gradient = vec3(dot(normal_form, right), dot(normal_form, up), dot(normal_form, back));
   float size = length(gradient), outside = (meta & kFlipped) != 0u ? -1.0 : 1.0;

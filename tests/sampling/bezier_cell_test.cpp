@@ -1,9 +1,13 @@
 // Looks for points and normals that are farther off than their certificate says.
 #include "../../sampling/bezier_cell.h"
 
+#include "../../sampling/graph_cell.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <random>
 
 namespace dupin {
@@ -49,7 +53,7 @@ void compare(const BezierPatch& cell, const CellFit& fit, double lo_s, double lo
       const Vec3 d = p - dp.origin, n = dp.n();
       const Vec2 xy{dot(d, dp.u), dot(d, dp.v)};
       const double z = sheet_height(dp, xy);
-      worst.position = std::max(worst.position, std::abs(z - dot(d, n)) / fit.bound);
+      worst.position = std::max(worst.position, (std::abs(z - dot(d, n)) - 1e-15) / fit.bound);
       const Vec3 normal = normalized(cross(su, sv));
       if (length(normal) < 0.5) continue;
       const Vec3 g = drawn_normal(dp, {xy.x, xy.y, z});
@@ -59,10 +63,21 @@ void compare(const BezierPatch& cell, const CellFit& fit, double lo_s, double lo
     }
 }
 
+using Fit = std::function<CellFit(const BezierPatch&, const CellRequest&)>;
+
+Fit by_nets() {
+  return [fitter = std::make_shared<CellFitter>()](const BezierPatch& patch, const CellRequest& request) {
+    return fitter->fit(patch, request);
+  };
+}
+Fit by_series() {
+  return fit_graph;
+}
+
 /// Divides until every cell is certified, comparing each.
-void search(const BezierPatch& patch, double tolerance, double angle, int depth, CellFitter& fitter,
+void search(const BezierPatch& patch, const CellRequest& request, int depth, const Fit& certify,
             Worst& worst) {
-  const CellFit fit = fitter.fit(patch, tolerance, angle);
+  const CellFit fit = certify(patch, request);
   if (fit.valid) {
     const CollapsedSides collapsed = collapsed_sides(patch);
     ++worst.cells;
@@ -70,34 +85,37 @@ void search(const BezierPatch& patch, double tolerance, double angle, int depth,
   }
   ASSERT_LT(depth, 30) << "a cell that could not be certified: twist or sheet " << !fit.quadric_decides
                        << " bound " << fit.bound << " normal " << fit.normal_bound;
-  BezierPatch a, b;
-  split_patch(patch, fit.split_u, a, b);
-  search(a, tolerance, angle, depth + 1, fitter, worst);
-  search(b, tolerance, angle, depth + 1, fitter, worst);
+  for (const BezierPatch& piece : split_patch(patch, fit.pieces_u, fit.pieces_v))
+    search(piece, request, depth + 1, certify, worst);
 }
 
-TEST(BezierCell, NoPointOrNormalViolatesItsCertificate) {
+class BothWays : public ::testing::TestWithParam<bool> {
+ protected:
+  Fit certify() const { return GetParam() ? by_series() : by_nets(); }
+};
+INSTANTIATE_TEST_SUITE_P(BezierCell, BothWays, ::testing::Bool(),
+                         [](const auto& i) { return i.param ? "BySeries" : "ByNets"; });
+
+TEST_P(BothWays, NoPointOrNormalViolatesItsCertificate) {
   std::mt19937 rng(11);
-  CellFitter fitter;
   for (int trial = 0; trial < 40; ++trial) {
     Worst worst;
     const BezierPatch patch =
         random_patch(1 + trial % 5, 1 + (trial / 5) % 4, trial % 2 == 1, trial % 3 == 0 ? 0.1 : 0.5, rng);
-    search(patch, 1e-3, 0.02, 0, fitter, worst);
+    search(patch, {1e-3, 0.02, {}, {}}, 0, certify(), worst);
     EXPECT_LE(worst.position, 1 + 1e-6);
     EXPECT_LE(worst.normal, 1 + 1e-6);
     EXPECT_GT(worst.cells, 0);
   }
 }
 
-TEST(BezierCell, TheBoundIsNotIdle) {
+TEST_P(BothWays, TheBoundIsNotIdle) {
   // A bound that is never approached would make many cells for nothing.
   std::mt19937 rng(12);
-  CellFitter fitter;
   double best = 0;
   for (int trial = 0; trial < 10; ++trial) {
     Worst worst;
-    search(random_patch(3, 3, false, 0.4, rng), 1e-3, 0.02, 0, fitter, worst);
+    search(random_patch(3, 3, false, 0.4, rng), {1e-3, 0.02, {}, {}}, 0, certify(), worst);
     best = std::max(best, worst.position);
   }
   EXPECT_GT(best, 0.4);
@@ -115,24 +133,22 @@ TEST(BezierCell, CollapsedSidesAreCertifiedWithoutEndlessSplitting) {
         const Vec3 p{r * std::cos(a), r * std::sin(a), -0.2 * r * r};
         patch.pole(i, j) = {p.x * w, p.y * w, p.z * w, w};
       }
-    CellFitter fitter;
     Worst worst;
-    search(patch, 1e-4, 0.005, 0, fitter, worst);
+    search(patch, {1e-4, 0.005, {}, {}}, 0, by_nets(), worst);
     EXPECT_LE(worst.position, 1 + 1e-6);
     EXPECT_LE(worst.normal, 1 + 1e-6);
     EXPECT_LT(worst.cells, 200) << "rational " << rational;
   }
 }
 
-TEST(BezierCell, AQuadricPatchIsOneCell) {
+TEST_P(BothWays, AQuadricPatchIsOneCell) {
   // A biquadratic patch of a paraboloid z = x² + y²: no splitting, no error.
   BezierPatch patch;
   patch.degree_u = patch.degree_v = 2;
   const double x[3] = {-1, 0, 1}, q[3] = {1, -1, 1};
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) patch.poles.push_back({0.3 * x[i], 0.3 * x[j], 0.09 * (q[i] + q[j]), 1});
-  CellFitter fitter;
-  const CellFit fit = fitter.fit(patch, 1e-9, 1e-7);
+  const CellFit fit = certify()(patch, {1e-9, 1e-7, {}, {}});
   EXPECT_TRUE(fit.valid);
   EXPECT_LT(fit.bound, 1e-14);
 }

@@ -131,6 +131,45 @@ Box2 grown(const Box2& box, double by) {
   return {box.lo - m, box.hi + m};
 }
 
+/// A closed surface's parameters from seam to seam, whether it is periodic or only closed; 0 where it is
+/// open.
+Vec2 closure(const Surface& surface) {
+  Vec2 length{period_u(surface), period_v(surface)};
+  const Box2 box = domain(surface);
+  const Vec2 size = box.size();
+  if (!std::isfinite(size.x) || !std::isfinite(size.y)) return length;
+  const double tiny = 1e-7 * distance(point_at(surface, box.lo.x, box.lo.y),
+                                      point_at(surface, box.center().x, box.center().y));
+  double apart_u = 0, apart_v = 0;
+  for (double f : {0.1, 0.4, 0.8}) {
+    const Vec2 at = box.lo + size * f;
+    apart_u =
+        std::max(apart_u, distance(point_at(surface, box.lo.x, at.y), point_at(surface, box.hi.x, at.y)));
+    apart_v =
+        std::max(apart_v, distance(point_at(surface, at.x, box.lo.y), point_at(surface, at.x, box.hi.y)));
+  }
+  if (apart_u <= tiny) length.x = size.x;
+  if (apart_v <= tiny) length.y = size.y;
+  return length;
+}
+
+/// Across a seam the face goes on at the parameters' other end.
+void cross_seam(const Surface& surface, const Outline& outline, const Vec3& p, const Vec2& closed,
+                const Box2& cell, Vec2& uv) {
+  if (inside_polygons(outline, uv)) return;
+  double least = distance(point_at(surface, uv.x, uv.y), p);
+  const Vec2 from = uv;
+  for (int a = -1; a <= 1; ++a)
+    for (int b = -1; b <= 1; ++b) {
+      const Vec2 by{a * closed.x, b * closed.y};
+      if (by.x == 0 && by.y == 0) continue;
+      Vec2 q = from + by;
+      const Box2 limits = grown({cell.lo + by, cell.hi + by}, 1.0);
+      if (!nearest(surface, p, q, limits) || !inside_polygons(outline, q)) continue;
+      if (const double d = distance(point_at(surface, q.x, q.y), p); d < least) least = d, uv = q;
+    }
+}
+
 /// Points of the face: all of them must be in some region.
 void check_coverage(const Part& part, const PartDps& dps, const Outline& outline,
                     const std::vector<std::uint32_t>& mine, const CheckOptions& options, FaceReport& report) {
@@ -156,6 +195,7 @@ void check_bounds(const Part& part, const PartDps& dps, const Outline& outline,
   const Face& face = part.faces[report.face];
   const Surface& surface = part.surfaces[face.surface];
   const double rounding = 1e-9 * part.box.diagonal();
+  const Vec2 closed = closure(surface);
   double edge_reach = 0;
   for (const Loop& loop : face.loops)
     for (const Trim& trim : loop) edge_reach = std::max(edge_reach, 8 * part.edges[trim.edge].tolerance);
@@ -194,6 +234,7 @@ void check_bounds(const Part& part, const PartDps& dps, const Outline& outline,
           ++report.unresolved;
           continue;
         }
+        if (!is_quadric(surface)) cross_seam(surface, outline, p, closed, dp.cell, uv);
         // A recognised spline's certificate is nurbs' own (recognize_test): here the quadric is held against
         // what was recognised.
         const bool recognized = face.recognized && is_quadric(face.recognized->surface);
@@ -219,7 +260,7 @@ void check_bounds(const Part& part, const PartDps& dps, const Outline& outline,
         }
         if (!inside_polygons(outline, uv) && distance_to_outline(outline, p) > options.margin + edge_reach) {
           // A period away it may be inside.
-          const double pu = period_u(surface), pv = period_v(surface);
+          const double pu = closed.x, pv = closed.y;
           bool elsewhere = false;
           for (int a = -1; a <= 1; ++a)
             for (int b = -1; b <= 1; ++b) elsewhere |= inside_polygons(outline, uv + Vec2{a * pu, b * pv});

@@ -79,7 +79,8 @@ INSTANTIATE_TEST_SUITE_P(
                       "cad/occt/linkrods.step", "cad/occt/bearing.iges", "nurbs/converted/teapot.step",
                       "nurbs/converted/v1_Camera_visible.step", "nurbs/converted/v1_HumanHead1_visible.step",
                       "cad/kicad/RV_Disc_D9mm_W4.1mm_P5mm.step", "cad/truck/abc-0008.step",
-                      "cad/occt/screw.step"),
+                      "cad/occt/screw.step", "nurbs/converted/v4_DinerMug.brep",
+                      "nurbs/converted/v1_HumanHead2.brep", "nurbs/converted/v5_ring.brep"),
     [](const auto& i) {
       std::string n = std::filesystem::path(i.param).stem().string();
       std::replace_if(
