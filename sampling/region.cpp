@@ -2,6 +2,7 @@
 #include "quadric_dp.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "piece_tests.h"
 
@@ -53,6 +54,16 @@ void append(const PartDps& from, PartDps& to) {
   to.arcs.insert(to.arcs.end(), from.arcs.begin(), from.arcs.end());
   to.ellipses.insert(to.ellipses.end(), from.ellipses.begin(), from.ellipses.end());
   to.skipped.insert(to.skipped.end(), from.skipped.begin(), from.skipped.end());
+}
+
+void append(PartDps&& from, PartDps& to) {
+  const bool nothing = to.dps.empty() && to.planes.empty() && to.lines.empty() && to.arcs.empty() &&
+                       to.ellipses.empty() && to.skipped.empty() && to.out_of_picture.empty() &&
+                       to.bound_px == 0;
+  if (nothing)
+    to = std::move(from);
+  else
+    append(std::as_const(from), to), from = {};
 }
 
 std::size_t DpScene::count() const {

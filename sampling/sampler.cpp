@@ -192,6 +192,52 @@ class PartSampler {
   const PartEdges edges_;
 };
 
+/// What all parts' faces share.
+struct Run {
+  const Model& model;
+  const SamplingOptions& options;
+  std::size_t total = 0;
+  std::atomic<std::size_t> done{0};
+  std::atomic<bool> stop{false};
+
+  void count_one() {
+    const std::size_t now = ++done;
+    if ((now & 63) == 0 &&
+        !report(options.progress, "prepare", static_cast<double>(now) / static_cast<double>(total)))
+      stop = true;
+  }
+};
+
+std::string listed_name(const Part& part, std::size_t face) {
+  const std::string& name = part.faces[face].name;
+  return name.empty() ? "face " + std::to_string(face + 1) + " of " + part.name : name;
+}
+
+void sample_part(Run& run, std::uint32_t p, PartDps& out) {
+  const Part& part = run.model.parts[p];
+  const PartSampler sampler(run.model, p, run.options);
+  std::vector<FaceDps> faces(part.faces.size());
+  parallel_for(
+      faces.size(),
+      [&](std::size_t i) {
+        if (run.stop) return;
+        sampler.sample_face(static_cast<std::uint32_t>(i), faces[i]);
+        run.count_one();
+      },
+      4);
+  if (run.stop) return;
+  std::size_t dps = 0;
+  for (const FaceDps& face : faces) dps += face.dps.dps.size();
+  out.dps.reserve(dps);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const bool none = faces[i].dps.dps.empty();
+    append(std::as_const(faces[i].dps), out);
+    faces[i].dps = {};
+    if (faces[i].failure.empty() && none) out.out_of_picture.push_back(static_cast<std::uint32_t>(i));
+    if (!faces[i].failure.empty()) out.skipped.push_back({listed_name(part, i), faces[i].failure, 1});
+  }
+}
+
 }  // namespace
 
 Result<DpScene> sample_quadric_dps(const Model& model, const SamplingOptions& options) {
@@ -199,38 +245,16 @@ Result<DpScene> sample_quadric_dps(const Model& model, const SamplingOptions& op
     return {StatusCode::invalid_argument, "the tolerance must be above 0"};
   DpScene scene;
   scene.parts.resize(model.parts.size());
-  std::size_t total = 0;
-  for (const Part& part : model.parts) total += part.faces.size();
-  std::atomic<std::size_t> done{0};
-  std::atomic<bool> stop{false};
-  for (std::uint32_t p = 0; p < model.parts.size(); ++p) {
-    const Part& part = model.parts[p];
-    const PartSampler sampler(model, p, options);
-    std::vector<FaceDps> faces(part.faces.size());
-    parallel_for(
-        faces.size(),
-        [&](std::size_t i) {
-          if (stop) return;
-          sampler.sample_face(static_cast<std::uint32_t>(i), faces[i]);
-          const std::size_t now = ++done;
-          if ((now & 63) == 0 &&
-              !report(options.progress, "prepare", static_cast<double>(now) / static_cast<double>(total)))
-            stop = true;
-        },
-        4);
-    if (stop) return {StatusCode::cancelled, "cancelled"};
-    PartDps& out = scene.parts[p];
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-      append(faces[i].dps, out);
-      if (faces[i].failure.empty() && faces[i].dps.dps.empty())
-        out.out_of_picture.push_back(static_cast<std::uint32_t>(i));
-      if (faces[i].failure.empty()) continue;
-      const std::string& name = part.faces[i].name;
-      out.skipped.push_back(
-          {name.empty() ? "face " + std::to_string(i + 1) + " of " + part.name : name, faces[i].failure, 1});
-    }
-    scene.bound_px = std::max(scene.bound_px, out.bound_px);
-    for (const QuadricDp& dp : out.dps) {
+  Run run{model, options};
+  for (const Part& part : model.parts) run.total += part.faces.size();
+  // In parallel over parts, too: assemblies have many of a few faces each.
+  parallel_for(scene.parts.size(), [&](std::size_t p) {
+    if (!run.stop) sample_part(run, static_cast<std::uint32_t>(p), scene.parts[p]);
+  });
+  if (run.stop) return {StatusCode::cancelled, "cancelled"};
+  for (const PartDps& part : scene.parts) {
+    scene.bound_px = std::max(scene.bound_px, part.bound_px);
+    for (const QuadricDp& dp : part.dps) {
       scene.bound = std::max(scene.bound, dp.bound);
       if (!dp.speck) scene.normal_bound = std::max(scene.normal_bound, dp.normal_bound);
     }
