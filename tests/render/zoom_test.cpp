@@ -9,8 +9,9 @@ namespace {
 
 constexpr double kDegree = 180 / 3.14159265358979323846;
 constexpr double kCloser = 1000;
-/// Facets would show as jumps of the normal from one pixel to the next that the surface does not make.
-constexpr double kJumpDegrees = 0.1;
+/// Facets would show as jumps of the normal from one pixel to the next that the surface does not make. By
+/// their bounds of a quarter degree neighbouring DPs may be half a degree apart.
+constexpr double kJumpDegrees = 0.15;
 
 /// A point inside a face: the origin of a DP that is bounded by its footprint alone.
 struct Spot {
