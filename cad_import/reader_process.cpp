@@ -327,9 +327,9 @@ Result<std::string> find_reader(const std::string& asked) {
     return {StatusCode::unreadable, "the CAD reader " + named + " is missing or cannot be run"};
   }
   for (const std::filesystem::path& self : own_folders())
-    for (const char* place : {"dupin-reader", "../libexec/dupin/dupin-reader", "../cad_import/dupin-reader",
-                              "../../libexec/dupin/dupin-reader",
-                              "../../cad_import/dupin-reader"})  // a build tree's
+    for (const char* place :
+         {"dupin-reader", "../libexec/dupin/dupin-reader", "../cad_import/dupin-reader",
+          "../../libexec/dupin/dupin-reader", "../../cad_import/dupin-reader"})  // a build tree's
       if (is_program(self / place)) return (self / place).lexically_normal().string();
   if (is_program(DUPIN_INSTALLED_READER)) return std::string(DUPIN_INSTALLED_READER);
   return {StatusCode::unreadable,

@@ -23,6 +23,8 @@ constexpr std::size_t kRowsATask = 16, kPointsATask = 4096;
 constexpr std::size_t kLeast = 4096;
 /// Grids with fewer samples in v a cell than this on average are evaluated as points of cells.
 constexpr std::size_t kShortRun = 4;
+/// Scattered samples of a cell that are computed before they are put in their places.
+constexpr std::size_t kScatteredAtOnce = 128;
 
 /// Consecutive parameters in one cell.
 struct Run {
@@ -81,9 +83,10 @@ class Gather {
   Gather(const Outputs& like, std::size_t count) {
     const std::size_t stride = ((count + 7) / 8 | 1) * 8;  // an odd number of cache lines apart
     const auto used = std::count_if(like.at.begin(), like.at.end(), [](const double* p) { return p; });
-    values_.resize(static_cast<std::size_t>(used) * stride);
+    // Not initialised: the kernels write all that is read.
+    values_.reset(new double[static_cast<std::size_t>(used) * stride]);
     kinds_.resize(like.kind ? count : 0);
-    double* next = values_.data();
+    double* next = values_.get();
     for (int c = 0; c < kernels::kChannels; ++c)
       if (like.at[c]) out_.at[c] = next, next += stride;
     out_.kind = like.kind ? kinds_.data() : nullptr;
@@ -100,7 +103,7 @@ class Gather {
   }
 
  private:
-  std::vector<double> values_;
+  std::unique_ptr<double[]> values_;
   std::vector<std::uint8_t> kinds_;
   Outputs out_;
 };
@@ -192,15 +195,16 @@ class SplineFamily : public BatchFamily {
     }
     const std::vector<std::uint32_t> order = by_cell(cell_of, table_u.size() * table_v.size());
     for (std::size_t i = 0; i < count; ++i) sorted_u[i] = u[order[i]], sorted_v[i] = v[order[i]];
-    const Gather gather(batch.out, count);
+    // A few at a time, so that they are scattered from the nearest cache.
+    const Gather gather(batch.out, std::min(count, kScatteredAtOnce));
     for (std::size_t i = 0, end; i < count; i = end) {
       const std::size_t cell = cell_of[order[i]];
-      for (end = i + 1; end < count && cell_of[order[end]] == cell;) ++end;
+      for (end = i + 1; end < count && end - i < kScatteredAtOnce && cell_of[order[end]] == cell;) ++end;
       const std::size_t in_u = cell / table_v.size(), in_v = cell % table_v.size();
       points(batch, cells_.cell(in_u, in_v, scratch), in_u, in_v, &sorted_u[i], &sorted_v[i], end - i,
-             gather.outputs(), i);
+             gather.outputs(), 0);
+      gather.scatter(end - i, batch.out, [&](std::size_t k) { return first + order[i + k]; });
     }
-    gather.scatter(count, batch.out, [&](std::size_t i) { return first + order[i]; });
   }
 
   /// Indices in the order of their cells; of one cell in their own order.

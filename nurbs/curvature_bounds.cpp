@@ -1,8 +1,8 @@
 // Bounds of a patch's principal curvatures: they are the values of II / I over all directions.
 //
-// Every coefficient of the two forms is a quotient of polynomials, which is within a computed radius of its value in the
-// patch's middle: the radius is the largest quotient of Bernstein coefficients of what differs. In the middle's own
-// orthonormal frame the forms are then bounded for all directions at once.
+// Every coefficient of the two forms is a quotient of polynomials, which is within a computed radius of its
+// value in the patch's middle: the radius is the largest quotient of Bernstein coefficients of what differs.
+// In the middle's own orthonormal frame the forms are then bounded for all directions at once.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -55,7 +55,8 @@ std::array<Tensor, 3> derivative(const std::array<Tensor, 3>& x, Tensor (*along)
 }
 
 /// w² Su from Xu and wu.
-std::array<Tensor, 3> tangent(const HomogeneousTensors& t, const std::array<Tensor, 3>& derived, const Tensor& w) {
+std::array<Tensor, 3> tangent(const HomogeneousTensors& t, const std::array<Tensor, 3>& derived,
+                              const Tensor& w) {
   std::array<Tensor, 3> out;
   for (std::size_t c = 0; c < 3; ++c) out[c] = t.w * derived[c] - t.x[c] * w;
   return out;
@@ -82,7 +83,8 @@ Forms forms_of(const BezierPatch& patch) {
   Forms out;
   if (!patch.rational) {
     out.first = {quotient(dot(xu, xu), one), quotient(dot(xu, xv), one), quotient(dot(xv, xv), one)};
-    out.second = {quotient(dot(derivative(xu, derivative_u), n), one), quotient(dot(derivative(xu, derivative_v), n), one),
+    out.second = {quotient(dot(derivative(xu, derivative_u), n), one),
+                  quotient(dot(derivative(xu, derivative_v), n), one),
                   quotient(dot(derivative(xv, derivative_v), n), one)};
     out.area = length_of(n, one);
     return out;
@@ -93,7 +95,9 @@ Forms forms_of(const BezierPatch& patch) {
   // w⁴ Suu · (Su × Sv) = Xuu · n − wuu X · (Xu × Xv), with n = w³ Su × Sv.
   Tensor volume = t.x[0] * (xu[1] * xv[2] - xu[2] * xv[1]) + t.x[1] * (xu[2] * xv[0] - xu[0] * xv[2]) +
                   t.x[2] * (xu[0] * xv[1] - xu[1] * xv[0]);
-  const auto second = [&](const std::array<Tensor, 3>& x, const Tensor& w) { return quotient(dot(x, n) - volume * w, w4); };
+  const auto second = [&](const std::array<Tensor, 3>& x, const Tensor& w) {
+    return quotient(dot(x, n) - volume * w, w4);
+  };
   out.second = {second(derivative(xu, derivative_u), derivative_u(wu)),
                 second(derivative(xu, derivative_v), derivative_v(wu)),
                 second(derivative(xv, derivative_v), derivative_v(wv))};
@@ -101,8 +105,8 @@ Forms forms_of(const BezierPatch& patch) {
   return out;
 }
 
-/// J⁻ᵀ F J⁻¹ for the Cholesky factor J = [a b; 0 d] of the first form in the middle, entry by entry; and how much of it
-/// the radii may be, as a matrix norm.
+/// J⁻ᵀ F J⁻¹ for the Cholesky factor J = [a b; 0 d] of the first form in the middle, entry by entry; and how
+/// much of it the radii may be, as a matrix norm.
 struct InFrame {
   double w11 = 0, w12 = 0, w22 = 0, off = 0;
 };
@@ -112,7 +116,8 @@ InFrame in_frame(const Form& form, double a, double slope, double d) {
   out.w11 = form.uu.centre / (a * a);
   out.w12 = (form.uv.centre - slope * form.uu.centre) / (a * d);
   out.w22 = (form.vv.centre - slope * (2 * form.uv.centre - slope * form.uu.centre)) / (d * d);
-  const double s = std::abs(slope), r11 = form.uu.radius / (a * a), r12 = (form.uv.radius + s * form.uu.radius) / (a * d),
+  const double s = std::abs(slope), r11 = form.uu.radius / (a * a),
+               r12 = (form.uv.radius + s * form.uu.radius) / (a * d),
                r22 = (form.vv.radius + s * (2 * form.uv.radius + s * form.uu.radius)) / (d * d);
   out.off = std::sqrt(r11 * r11 + 2 * r12 * r12 + r22 * r22);
   return out;
@@ -131,11 +136,13 @@ CurvatureBounds curvature_bounds(const BezierPatch& patch) {
   if (!(e > 0) || !(rest > 0)) return unknown;
   const double a = std::sqrt(e), d = std::sqrt(rest);
   const InFrame first = in_frame(forms.first, a, slope, d), second = in_frame(forms.second, a, slope, d);
-  const double area_lo = forms.area.centre - forms.area.radius, area_hi = forms.area.centre + forms.area.radius;
+  const double area_lo = forms.area.centre - forms.area.radius,
+               area_hi = forms.area.centre + forms.area.radius;
   // The first form is the identity but for `off` and rounding.
   const double off = first.off + kRounding;
   if (!(off < 1) || !(area_lo > 0)) return unknown;
-  const double mean = 0.5 * (second.w11 + second.w22), r = std::hypot(0.5 * (second.w11 - second.w22), second.w12);
+  const double mean = 0.5 * (second.w11 + second.w22),
+               r = std::hypot(0.5 * (second.w11 - second.w22), second.w12);
   const double slack = second.off + kRounding * (std::abs(mean) + r);
   const double lo = mean - r - slack, hi = mean + r + slack;
   CurvatureBounds out;

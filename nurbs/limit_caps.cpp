@@ -64,9 +64,8 @@ std::vector<Vec3> differences(const std::vector<Vec4>& poles, int degree, bool a
   return out;
 }
 
-/// A number that |Su × Sv| is nowhere below, or 0.
-double least_normal(const BezierPatch& patch) {
-  const NormalCone cone = normal_cone(patch);
+/// A number that |Su × Sv| is nowhere below, or 0, from the cone of its directions.
+double least_normal(const BezierPatch& patch, const NormalCone& cone) {
   if (!cone.bounded()) return 0;
   Frame3 frame;
   frame.origin = xyz(patch.poles.front());
@@ -81,15 +80,22 @@ double least_normal(const BezierPatch& patch) {
   return std::max(least, 0.0);
 }
 
-/// The angle between the normals N = Su × Sv of two patches at the same parameters: |N − M| is at most
-/// |Su − Tu| |Sv| + |Tu| |Sv − Tv|, and its quotient with |N| is the angle's sine at least.
+/// The angle between the normals N = Su × Sv of two patches at the same parameters, by the better of two
+/// bounds. Where their derivatives agree, |N − M| is at most |Su − Tu| |Sv| + |Tu| |Sv − Tv|, and its
+/// quotient with |N| is the angle's sine at least. Close to an extraordinary vertex they do not, but both
+/// patches are almost flat: the angle of their cones.
 double normal_difference(const BezierPatch& s, const BezierPatch& t) {
   const auto su = differences(s.poles, s.degree_u, true), sv = differences(s.poles, s.degree_v, false),
              tu = differences(t.poles, t.degree_u, true), tv = differences(t.poles, t.degree_v, false);
   const double off =
       largest_difference(su, tu) * largest_length(sv) + largest_length(tu) * largest_difference(sv, tv);
-  const double least = least_normal(s);
-  return off < least ? std::asin(off / least) : std::numbers::pi;
+  const NormalCone cs = normal_cone(s), ct = normal_cone(t);
+  const double least = least_normal(s, cs);
+  double angle = off < least ? std::asin(off / least) : std::numbers::pi;
+  if (cs.bounded() && ct.bounded())
+    angle = std::min(
+        angle, cs.angle + ct.angle + std::atan2(length(cross(cs.axis, ct.axis)), dot(cs.axis, ct.axis)));
+  return angle;
 }
 
 /// By vertex, the box of all faces around it. The limit over a face lies in the hull of the faces around its
@@ -120,6 +126,13 @@ class CapCheck {
  private:
   void compare(const LimitNode& node, const Square& square) {
     const BezierPatch exact = to_bezier(forest_.patches[node.patch]), piece = piece_of(patch_, square);
+    if (forest_.corners() == 4) return compare(exact, piece);
+    // Only what is near the triangle: beyond, polynomials may go anywhere.
+    for (const Box2& near : squares_of_triangle())
+      compare(subpatch(exact, near.lo.x, near.hi.x, near.lo.y, near.hi.y),
+              subpatch(piece, near.lo.x, near.hi.x, near.lo.y, near.hi.y));
+  }
+  void compare(const BezierPatch& exact, const BezierPatch& piece) {
     double off = 0;
     for (std::size_t i = 0; i < exact.poles.size(); ++i)
       off = std::max(off, distance(xyz(exact.poles[i]), xyz(piece.poles[i])));
@@ -156,6 +169,17 @@ bool good_enough(const LimitCap& cap, double diagonal, const LimitPartOptions& o
 }
 
 }  // namespace
+
+std::vector<Box2> squares_of_triangle() {
+  constexpr int kSquares = 4;
+  std::vector<Box2> squares;
+  for (int i = 0; i < kSquares; ++i)
+    for (int j = 0; i + j < kSquares; ++j) {
+      const Vec2 lo = Vec2{static_cast<double>(i), static_cast<double>(j)} / kSquares;
+      squares.push_back({lo, lo + Vec2{1, 1} / kSquares});
+    }
+  return squares;
+}
 
 BezierPatch to_bezier(const LimitPatch& patch) {
   BezierPatch out;

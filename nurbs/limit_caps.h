@@ -46,6 +46,9 @@ struct LimitCover {
 LimitCover make_cover(const LimitForest& forest, double diagonal, const LimitPartOptions& options,
                       int deepest);
 
+/// Squares that cover s + t <= 1 and little more.
+std::vector<Box2> squares_of_triangle();
+
 /// A patch over local parameters as others have it.
 BezierPatch to_bezier(const LimitPatch& patch);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bezier.h"
 #include "limit_basis.h"
 
 namespace dupin {
@@ -194,7 +195,6 @@ class PartBuilder {
     if (piece.cap)
       face.recognized = std::make_shared<RecognizedSurface>(
           RecognizedSurface{surface, piece.cap->deviation, piece.cap->normal_deviation});
-    for (const Vec3& pole : piece.patch->poles) part_.box.add(pole);
     part_.surfaces.push_back(std::move(surface));
     part_.faces.push_back(std::move(face));
   }
@@ -230,6 +230,32 @@ std::vector<Piece> pieces_of(const LimitForest& forest, const LimitCover& cover)
   return pieces;
 }
 
+/// Of a triangle s + t <= 1 only what is near it: beyond, the polynomial may go anywhere.
+void add_triangle(const LimitPatch& patch, Box3& box) {
+  const BezierPatch whole = to_bezier(patch);
+  for (const Box2& near : squares_of_triangle())
+    for (const Vec4& pole : subpatch(whole, near.lo.x, near.hi.x, near.lo.y, near.hi.y).poles)
+      box.add(Vec3{pole.x, pole.y, pole.z});
+}
+
+/// The limit's own, which is the same for any choice of pieces: caps are within their deviation of it.
+Box3 box_of(const LimitForest& forest) {
+  constexpr int kLargeTriangles = 3;  // levels
+  Box3 box;
+  for (const LimitNode& node : forest.nodes) {
+    if (!node.leaf()) continue;
+    if (!node.regular()) {
+      for (int corner = 0; corner < forest.corners(); ++corner) box.add(corner_limit(forest, node, corner));
+    } else if (const LimitPatch& patch = forest.patches[node.patch];
+               patch.degree == 4 && node.level <= kLargeTriangles) {
+      add_triangle(patch, box);
+    } else {
+      for (const Vec3& pole : patch.poles) box.add(pole);
+    }
+  }
+  return box;
+}
+
 std::vector<std::uint32_t> faces_by_node(const LimitForest& forest, const std::vector<Piece>& pieces) {
   std::vector<std::uint32_t> face_of(forest.nodes.size(), kNoIndex);
   for (std::size_t i = 0; i < pieces.size(); ++i) face_of[pieces[i].node] = static_cast<std::uint32_t>(i);
@@ -255,6 +281,7 @@ Part make_limit_part(const LimitForest& forest, const PolygonMesh& cage, double 
   const LimitCover cover = make_cover(forest, diagonal, options, levels);
   const std::vector<Piece> pieces = pieces_of(forest, cover);
   Part part = PartBuilder(forest, cage, pieces).build();
+  part.box = box_of(forest);
   if (triangles) part.mesh = tessellate_limit(forest, cage, faces_by_node(forest, pieces), levels);
   return part;
 }

@@ -55,14 +55,16 @@ Trial collapsed_edge(Random& random) {
   return t;
 }
 
-/// A Bézier triangle of degree n as a patch whose edge u = 0 is a point: row i is the triangle's row raised to degree n.
+/// A Bézier triangle of degree n as a patch whose edge u = 0 is a point: row i is the triangle's row raised
+/// to degree n.
 Trial triangular_patch(Random& random) {
   const int n = random.integer(2, 5);
   Trial t{bumpy(random, n, n, 0, 0), near_start(random), anywhere(random)};
   for (int i = 0; i <= n; ++i) {
     std::vector<Vec3> row;
     for (int j = 0; j <= i; ++j)
-      row.push_back({(i + random.between(-0.2, 0.2)) / n, (j - 0.5 * i + random.between(-0.2, 0.2)) / n, random.between(-0.3, 0.3)});
+      row.push_back({(i + random.between(-0.2, 0.2)) / n, (j - 0.5 * i + random.between(-0.2, 0.2)) / n,
+                     random.between(-0.3, 0.3)});
     while (static_cast<int>(row.size()) <= n) {
       const auto d = static_cast<double>(row.size());
       std::vector<Vec3> raised{row.front()};
@@ -108,7 +110,8 @@ Trial near_umbilic(Random& random) {
   for (int i = 0; i <= 4; ++i)
     for (int j = 0; j <= 4; ++j) {
       const double x = i / 4.0, y = j / 4.0;
-      pole(t.surface, i, j) = {x, y, 0.5 * k * (square(i) - x + square(j) - y) + bend * random.between(-1, 1)};
+      pole(t.surface, i, j) = {x, y,
+                               0.5 * k * (square(i) - x + square(j) - y) + bend * random.between(-1, 1)};
     }
   return t;
 }
@@ -130,13 +133,15 @@ Trial cusp(Random& random) {
 }
 
 Trial extreme_weights(Random& random) {
-  Trial t{bumpy(random, random.integer(2, 5), random.integer(2, 5), 0.3, 0.3), anywhere(random), anywhere(random)};
+  Trial t{bumpy(random, random.integer(2, 5), random.integer(2, 5), 0.3, 0.3), anywhere(random),
+          anywhere(random)};
   add_weights(random, t.surface, 1e-6, 1e6);
   return t;
 }
 
 Trial high_degree(Random& random) {
-  Trial t{bumpy(random, random.integer(20, 25), random.integer(20, 25), 0.3, 0.3), anywhere(random), anywhere(random)};
+  Trial t{bumpy(random, random.integer(20, 25), random.integer(20, 25), 0.3, 0.3), anywhere(random),
+          anywhere(random)};
   if (random.integer(0, 1)) add_weights(random, t.surface, 0.1, 10);
   return t;
 }
@@ -188,27 +193,34 @@ double Random::log_between(double lo, double hi) {
 }
 
 Trial random_patch(Random& random) {
-  Trial t{bumpy(random, random.integer(1, 15), random.integer(1, 15), 0.3, 0.3), anywhere(random), anywhere(random)};
+  Trial t{bumpy(random, random.integer(1, 15), random.integer(1, 15), 0.3, 0.3), anywhere(random),
+          anywhere(random)};
   add_weights(random, t.surface, 0.1, 10);
   return t;
 }
 
 Trial wild_patch(Random& random) {
-  Trial t{bumpy(random, random.integer(1, 15), random.integer(1, 15), 0, 0), anywhere(random), anywhere(random)};
+  Trial t{bumpy(random, random.integer(1, 15), random.integer(1, 15), 0, 0), anywhere(random),
+          anywhere(random)};
   for (Vec3& p : t.surface.poles) p = {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
   add_weights(random, t.surface, 0.1, 10);
   return t;
 }
 
 const std::vector<Family>& hard_families() {
-  static const std::vector<Family> families{
-      {"collapsed edges", collapsed_edge},     {"triangular patches", triangular_patch},
-      {"poles of spheres", sphere_pole},       {"near-parallel partials", near_parallel},
-      {"near-umbilics", near_umbilic},         {"repeated knots", repeated_knots},
-      {"cusps", cusp},                         {"weights from 1e-6 to 1e6", extreme_weights},
-      {"degrees 20 to 25", high_degree},       {"1e8 sizes from the origin", far_away},
-      {"units of 1e-9 and 1e9", odd_units},    {"slivers", sliver},
-      {"seams", seam}};
+  static const std::vector<Family> families{{"collapsed edges", collapsed_edge},
+                                            {"triangular patches", triangular_patch},
+                                            {"poles of spheres", sphere_pole},
+                                            {"near-parallel partials", near_parallel},
+                                            {"near-umbilics", near_umbilic},
+                                            {"repeated knots", repeated_knots},
+                                            {"cusps", cusp},
+                                            {"weights from 1e-6 to 1e6", extreme_weights},
+                                            {"degrees 20 to 25", high_degree},
+                                            {"1e8 sizes from the origin", far_away},
+                                            {"units of 1e-9 and 1e9", odd_units},
+                                            {"slivers", sliver},
+                                            {"seams", seam}};
   return families;
 }
 

@@ -54,11 +54,13 @@ std::vector<Real> functions(const std::vector<double>& knots, std::size_t span, 
 }
 
 /// From coefficients by functions of one degree less to those of degree p: the derivative's formula.
-std::vector<Real> differentiated(const std::vector<double>& knots, std::size_t span, int p, const std::vector<Real>& lower) {
+std::vector<Real> differentiated(const std::vector<double>& knots, std::size_t span, int p,
+                                 const std::vector<Real>& lower) {
   std::vector<Real> out(static_cast<std::size_t>(p) + 1, Real(0));
   for (int i = 0; i < p; ++i) {
     const std::size_t k = span + static_cast<std::size_t>(i) + 1 - static_cast<std::size_t>(p);
-    const Real part = lower[static_cast<std::size_t>(i)] * p / (Real(knots[k + static_cast<std::size_t>(p)]) - Real(knots[k]));
+    const Real part = lower[static_cast<std::size_t>(i)] * p /
+                      (Real(knots[k + static_cast<std::size_t>(p)]) - Real(knots[k]));
     out[static_cast<std::size_t>(i)] -= part;
     out[static_cast<std::size_t>(i) + 1] += part;
   }
@@ -75,8 +77,8 @@ Basis basis_at(const std::vector<double>& knots, int degree, std::size_t count, 
   basis.values[1] = differentiated(knots, span, degree, functions(knots, span, degree - 1, t));
   basis.values[2].assign(static_cast<std::size_t>(degree) + 1, Real(0));
   if (degree >= 2)
-    basis.values[2] = differentiated(knots, span, degree,
-                                     differentiated(knots, span, degree - 1, functions(knots, span, degree - 2, t)));
+    basis.values[2] = differentiated(
+        knots, span, degree, differentiated(knots, span, degree - 1, functions(knots, span, degree - 2, t)));
   return basis;
 }
 
@@ -132,7 +134,8 @@ Jet projected(const HomogeneousJet& h) {
 ExactCurvature exact_curvature(const BsplineSurface& surface, double u, double v) {
   const Jet jet = projected(homogeneous_jet(surface, u, v));
   const Point normal = cross(jet.pu, jet.pv);
-  const Real e = dot(jet.pu, jet.pu), f = dot(jet.pu, jet.pv), g = dot(jet.pv, jet.pv), area2 = dot(normal, normal);
+  const Real e = dot(jet.pu, jet.pu), f = dot(jet.pu, jet.pv), g = dot(jet.pv, jet.pv),
+             area2 = dot(normal, normal);
   ExactCurvature out;
   if (area2 == 0) return out;
   out.regular = true;
@@ -142,7 +145,8 @@ ExactCurvature exact_curvature(const BsplineSurface& surface, double u, double v
   const Real mean = (e * nn - 2 * f * m + g * l) / (2 * area2), gauss = (l * nn - m * m) / area2;
   Real root2 = mean * mean - gauss;
   if (root2 < 0) root2 = 0;
-  const Real root = sqrt(root2), k1 = mean >= 0 ? mean + root : mean - root, k2 = mean >= 0 ? mean - root : mean + root;
+  const Real root = sqrt(root2), k1 = mean >= 0 ? mean + root : mean - root,
+             k2 = mean >= 0 ? mean - root : mean + root;
   // (II − k1 I) (x, y) = 0: of its two rows the larger.
   const Real a = l - k1 * e, b = m - k1 * f, c = nn - k1 * g;
   const bool first = a * a + b * b >= b * b + c * c;

@@ -10,8 +10,8 @@ namespace dupin::bench {
 struct ExactCurvature {
   Vec3 n, d1;  ///< d1 up to its sign
   double k1 = 0, k2 = 0;
-  /// By how much a relative error of the derivatives is multiplied in the larger curvature: |Suu|/a² + |Suv|/(ad) +
-  /// |Svv|/d², divided by |k1|, with the lengths a, d of Su and of the part of Sv across it.
+  /// By how much a relative error of the derivatives is multiplied in the larger curvature: |Suu|/a² +
+  /// |Suv|/(ad) + |Svv|/d², divided by |k1|, with the lengths a, d of Su and of the part of Sv across it.
   double condition = 0;
   bool regular = false;  ///< Su × Sv is not zero
 };

@@ -1,8 +1,10 @@
-// How exact the batch evaluator's curvatures are: random patches and families of hard ones, beside 100-digit arithmetic.
+// How exact the batch evaluator's curvatures are: random patches and families of hard ones, beside 100-digit
+// arithmetic.
 //
-// Errors are relative to the larger of the two curvatures. Where it is itself small beside the surface's second
-// derivatives the problem is ill-conditioned: the condition number says by how much (hundred_digits.h), and errors are
-// also given divided by it. Directions are compared where the curvatures differ by more than a millionth.
+// Errors are relative to the larger of the two curvatures. Where it is itself small beside the surface's
+// second derivatives the problem is ill-conditioned: the condition number says by how much
+// (hundred_digits.h), and errors are also given divided by it. Directions are compared where the curvatures
+// differ by more than a millionth.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -40,7 +42,9 @@ Outcome measure(const Trial& trial) {
   }
   SurfaceSamples samples;
   const double u[] = {trial.u}, v[] = {trial.v};
-  batch.value().scattered(u, v, {.compute = Compute::points | Compute::normals | Compute::curvatures | Compute::directions}, samples);
+  batch.value().scattered(
+      u, v, {.compute = Compute::points | Compute::normals | Compute::curvatures | Compute::directions},
+      samples);
   const double k1 = samples.k1[0], k2 = samples.k2[0];
   const Vec3 d1 = samples.d1[0];
   out.undefined = samples.kind[0] == Curvature::Kind::undefined;
@@ -99,8 +103,9 @@ Summary run(const std::string& name, std::size_t count, std::uint64_t seed, Tria
 }
 
 void print(const Summary& s) {
-  std::printf("| %s | %zu | %.1e | %.1e | %.1e | %.0e | %.1e | %.1e | %zu | %zu |\n", s.name.c_str(), s.count, s.median, s.p99,
-              s.largest, s.worst_condition, s.largest_by_condition, s.angle, s.undefined, s.unflagged);
+  std::printf("| %s | %zu | %.1e | %.1e | %.1e | %.0e | %.1e | %.1e | %zu | %zu |\n", s.name.c_str(), s.count,
+              s.median, s.p99, s.largest, s.worst_condition, s.largest_by_condition, s.angle, s.undefined,
+              s.unflagged);
   std::fflush(stdout);
 }
 
@@ -130,8 +135,10 @@ int run_main(int argc, char** argv) {
   app.add_option("--seed", seed);
   app.add_option("-o", output, "JSON lines");
   CLI11_PARSE(app, argc, argv);
-  std::printf("| surfaces | trials | median error | 99 %% below | largest | condition there | largest by condition | direction, rad | said undefined | not finite, unsaid |\n"
-              "|---|---|---|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| surfaces | trials | median error | 99 %% below | largest | condition there | largest by condition | "
+      "direction, rad | said undefined | not finite, unsaid |\n"
+      "|---|---|---|---|---|---|---|---|---|---|\n");
   std::ofstream out;
   if (!output.empty()) out.open(output);
   std::size_t unflagged = 0;
