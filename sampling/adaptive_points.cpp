@@ -11,6 +11,9 @@ constexpr int kMostHalvings = 40;
 constexpr double kLeastSize = 1e-3;
 /// What a rectangle has to reach beyond the eight points, for the border between them.
 constexpr double kMargin = 0.02;
+/// Seen at a slant, neighbouring rectangles in different planes shift against each other by their distance
+/// times the slant's tangent: they reach this tangent times the distance of the osculating circle farther.
+constexpr double kSlant = 2;
 /// Over one cell the normal turns by less than this: else its rectangle says little of what is behind it.
 constexpr double kLeastCosine = 0.5;
 
@@ -67,6 +70,8 @@ class AdaptivePatch {
       }
     }
     made.reach = made.reach * (1 + kMargin);
+    made.reach = {made.reach.x + kSlant * sagitta(p.lambda_u, made.reach.x),
+                  made.reach.y + kSlant * sagitta(p.lambda_v, made.reach.y)};
     made.covered = facing && made.reach.x <= p.half_u && made.reach.y <= p.half_v;
     if (across[0] != across[1]) made.along_u = across[0] > across[1];
     return made;

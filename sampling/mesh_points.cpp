@@ -10,6 +10,9 @@ namespace dupin {
 namespace {
 
 constexpr double kDegrees = 3.14159265358979323846 / 180;
+/// Rectangles reach this many times the distance of the osculating circle farther, but not more than this
+/// part.
+constexpr double kSlant = 2, kMostSlant = 0.5;
 
 struct PositionHash {
   std::size_t operator()(const Vec3& p) const {
@@ -199,6 +202,11 @@ class Fan {
       const Triangle& t = triangles_[c / 3];
       reach(p, (positions_[t.vertices[0]] + positions_[t.vertices[1]] + positions_[t.vertices[2]]) / 3,
             t.normal, half);
+    }
+    if (hold_centroids) {
+      // As seen at a slant; see adaptive_points.cpp.
+      half.x += std::min(kSlant * sagitta(p.lambda_u, half.x), kMostSlant * half.x);
+      half.y += std::min(kSlant * sagitta(p.lambda_v, half.y), kMostSlant * half.y);
     }
     // A sliver's edges may all lie along one direction, but for rounding.
     const double least = 1e-3 * std::max(half.x, half.y);
