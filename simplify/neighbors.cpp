@@ -10,8 +10,22 @@ namespace {
 
 constexpr std::uint32_t kTile = 96;         ///< samples along a side of a block of a grid
 constexpr std::size_t kBlockPoints = 8192;  ///< of a block in space, at most
+/// Of the angle between normals of one sheet: radians, and times the larger curvature and the distance, which
+/// is what it would be if that curvature went on; as chords of the unit circle.
+constexpr double kFreeTurn = 0.05, kTurnFactor = 1.5;
 constexpr std::size_t kAcross = 8;          ///< nearest points of other patches that a border point looks at
 constexpr std::size_t kWithoutOrder = 12;   ///< nearest points that a point without grid or edges looks at
+
+/// Whether two points can lie on one smooth piece of surface: their normals differ by no more than the
+/// curvature allows over their distance, nor does the way from one to the other leave their planes by more.
+/// Rectangles that reach over a sharp edge do not stand for the surface behind it.
+bool same_sheet(const Rectangle& p, const Rectangle& q, const Vec3& d) {
+  const double most = std::max(std::abs(p.lambda_u), std::abs(q.lambda_u)), distance = length(d);
+  const double turn = std::min(kFreeTurn + kTurnFactor * most * distance, kMostTurn);
+  const Vec3 chord = p.n - q.n;
+  return dot(chord, chord) <= turn * turn && std::abs(dot(d, p.n)) <= turn * distance &&
+         std::abs(dot(d, q.n)) <= turn * distance;
+}
 
 /// Some of a part's points for nanoflann.
 struct Cloud {
@@ -155,7 +169,7 @@ bool related(const Rectangle& p, const Rectangle& q, const PruneOptions& options
   const Vec3 d = q.position - p.position;
   const double reach = p.radius + q.radius;
   if (dot(d, d) > reach * reach) return false;
-  if (options.enclosure == EnclosureTest::exact && dot(p.n, q.n) < kLeastNormalCosine) return false;
+  if (options.enclosure == EnclosureTest::exact && !same_sheet(p, q, d)) return false;
   return overlaps(p, q);
 }
 

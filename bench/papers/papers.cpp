@@ -21,7 +21,7 @@ using Json = nlohmann::json;
 constexpr int kWidth = 800, kHeight = 600;  // as in the papers
 
 struct Options {
-  std::string data, output, pictures;
+  std::string data, output, pictures, model;
   int frames = 9, most_grid = 395;
 };
 
@@ -61,6 +61,7 @@ class Bench {
         "|\n"
         "|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (const Subject& subject : kSubjects) {
+      if (!options_.model.empty() && options_.model != subject.name) continue;
       const auto stage = need(Stage::open(options_.data + "/" + subject.file, "iso", kWidth, kHeight));
       const Clock start = Clock::now();
       const PointScene all = sampled(*stage, subject);
@@ -311,6 +312,7 @@ int run(int argc, char** argv) {
   app.add_option("--data", options.data, "The folder of models (default: $DUPIN_DATA)");
   app.add_option("-o", options.output, "Rows as JSON lines");
   app.add_option("--pictures", options.pictures, "A folder for table1's pictures");
+  app.add_option("--model", options.model, "Of table1: one of teapot, camera, head, bunny, venus");
   app.add_option("--frames", options.frames, "Timed frames of each kind")->check(CLI::Range(1, 1000));
   app.add_option("--most-grid", options.most_grid, "Densest grid of a patch")->check(CLI::Range(20, 1000));
   std::vector<std::string> tables;

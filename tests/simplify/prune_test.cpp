@@ -316,6 +316,38 @@ TEST(Prune, SidesOfAThinPlateDoNotHideEachOther) {
   EXPECT_EQ(holes(part, above), 0);
 }
 
+TEST(Prune, RectanglesThatReachOverASharpEdgeDoNotCoverWhatIsBehindIt) {
+  constexpr int kSide = 21;
+  PartPoints part;
+  for (int plane = 0; plane < 2; ++plane) {
+    const double slope = plane * 0.8;  // radians, downwards from the edge x = 0
+    const Vec3 away{plane == 0 ? -1 : std::cos(slope), 0, -std::sin(slope)};
+    part.grids.push_back({static_cast<std::uint32_t>(part.grid_points.size()), kSide, kSide});
+    for (int i = 0; i < kSide; ++i)
+      for (int j = 0; j < kSide; ++j) {
+        DifferentialPoint p;
+        p.u = plane == 0 ? -away : away;
+        p.position = away * (0.05 * i) + p.v * (0.05 * j);
+        p.half_u = p.half_v = 0.2;
+        part.grid_points.push_back(static_cast<std::uint32_t>(part.points.size()));
+        part.points.push_back(p);
+      }
+  }
+  const std::vector<bool> keep = kept(part, {});
+  EXPECT_LT(count(keep), part.points.size() / 6);
+  for (std::size_t i = 0; i < part.points.size(); ++i) {
+    const DifferentialPoint& at = part.points[i];
+    bool covered = false;
+    for (std::size_t k = 0; k < keep.size() && !covered; ++k) {
+      const DifferentialPoint& p = part.points[k];
+      const Vec3 d = at.position - p.position;
+      covered = keep[k] && std::abs(dot(d, p.n())) < 1e-12 && std::abs(dot(d, p.u)) <= 0.2 + 1e-9 &&
+                std::abs(dot(d, p.v)) <= 0.2 + 1e-9;
+    }
+    EXPECT_TRUE(covered) << i;
+  }
+}
+
 TEST(Prune, SceneKeepsItsGridsAndEdgesInStep) {
   PointScene scene;
   scene.parts = {sheet(40, 2), {}};
