@@ -13,8 +13,8 @@ constexpr std::size_t kBlockPoints = 8192;  ///< of a block in space, at most
 /// Of the angle between normals of one sheet: radians, and times the larger curvature and the distance, which
 /// is what it would be if that curvature went on; as chords of the unit circle.
 constexpr double kFreeTurn = 0.05, kTurnFactor = 1.5;
-constexpr std::size_t kAcross = 8;          ///< nearest points of other patches that a border point looks at
-constexpr std::size_t kWithoutOrder = 12;   ///< nearest points that a point without grid or edges looks at
+constexpr std::size_t kAcross = 8;         ///< nearest points of other patches that a border point looks at
+constexpr std::size_t kWithoutOrder = 12;  ///< nearest points that a point without grid or edges looks at
 
 /// Whether two points can lie on one smooth piece of surface: their normals differ by no more than the
 /// curvature allows over their distance, nor does the way from one to the other leave their planes by more.

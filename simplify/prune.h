@@ -23,8 +23,9 @@ enum class EnclosureTest {
 
 /// What may remain of a rectangle that the exact test calls covered, as a part of its area; roundoff.
 inline constexpr double kSliver = 1e-9;
-/// Neighbours whose normals are farther apart than this chord of the unit circle (60°), or than the curvatures
-/// explain, do not count as covering the same surface (exact test): rectangles stick out over sharp edges.
+/// Neighbours whose normals are farther apart than this chord of the unit circle (60°), or than the
+/// curvatures explain, do not count as covering the same surface (exact test): rectangles stick out over
+/// sharp edges.
 inline constexpr double kMostTurn = 1;
 
 struct PruneOptions {
