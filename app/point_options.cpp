@@ -75,8 +75,10 @@ void add_point_options(CLI::App& command, PointOptions& options, bool tolerance)
       ->type_name("D")
       ->group(group);
   command
-      .add_option("--border", options.border,
-                  "Adaptive: how far rectangles may stand out over trims (default: δ / 8)")
+      .add_option(
+          "--border", options.border,
+          "Adaptive: how far rectangles may stand out over a face's borders (default: δ / 8; drawn, a "
+          "pixel)")
       ->check(positive)
       ->type_name("B")
       ->group(group);

@@ -10,6 +10,8 @@ namespace dupin::app {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
+/// δ over the least border of its own accord.
+constexpr double kFinestBorder = 32;
 constexpr const char* kNames[] = {"dp", "square", "rectangle", "ellipse"};
 
 float linear(std::uint8_t srgb) {
@@ -72,6 +74,8 @@ class PointsPrimitive : public RenderPrimitive {
       const PointOptions options = with_defaults(input);
       PointSamplingOptions sampling = options.sampling(input.model);
       sampling.progress = input.progress;
+      // Rectangles stand out over borders by a pixel; but a close-up does not make a model's borders endless.
+      if (sampling.border == 0) sampling.border = std::max(pixel(input), sampling.delta / kFinestBorder);
       Result<MadePoints> made = make_points(input.model, sampling, options);
       if (!made.ok()) return made.status();
       points_ = std::move(made->scene);
@@ -87,6 +91,14 @@ class PointsPrimitive : public RenderPrimitive {
   SceneContent content() const override { return {nullptr, {}, {&points_, primitive_, published_}}; }
 
  private:
+  static double pixel(const PrimitiveInput& input) {
+    const Camera& camera = input.camera;
+    const double away = distance(camera.eye, bounding_box(input.model).center());
+    const double height =
+        camera.orthographic ? camera.ortho_height : 2 * away * std::tan(camera.fov_degrees * kPi / 360);
+    return height / camera.height;
+  }
+
   /// Points as dense as the curvature asks; splats, which are flat, as dense as the picture.
   PointOptions with_defaults(const PrimitiveInput& input) const {
     constexpr double kSplatSpacingPx = 2;
@@ -95,11 +107,7 @@ class PointsPrimitive : public RenderPrimitive {
     if (primitive_ == PointPrimitive::differential_point) {
       options.method = "adaptive";
     } else {
-      const Camera& camera = input.camera;
-      const double away = distance(camera.eye, bounding_box(input.model).center());
-      const double height =
-          camera.orthographic ? camera.ortho_height : 2 * away * std::tan(camera.fov_degrees * kPi / 360);
-      options.spacing = kSplatSpacingPx * height / camera.height;
+      options.spacing = kSplatSpacingPx * pixel(input);
     }
     return options;
   }

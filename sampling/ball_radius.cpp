@@ -1,5 +1,6 @@
 #include "ball_radius.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace dupin {
@@ -47,9 +48,12 @@ void add_neighbors(const PartPoints& part, std::vector<float>& radii) {
 std::vector<float> ball_radii(const PartPoints& part) {
   std::vector<float> radii(part.points.size(), 0);
   if (!part.pruned) add_neighbors(part, radii);
-  for (std::size_t i = 0; i < radii.size(); ++i)
-    if (!(radii[i] > 0))
-      radii[i] = static_cast<float>(2 * std::hypot(part.points[i].half_u, part.points[i].half_v));
+  const float largest = radii.empty() ? 0 : *std::max_element(radii.begin(), radii.end());
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    if (radii[i] > 0) continue;
+    const auto own = static_cast<float>(2 * std::hypot(part.points[i].half_u, part.points[i].half_v));
+    radii[i] = largest > 0 ? std::min(largest, own) : own;
+  }
   return radii;
 }
 

@@ -35,8 +35,8 @@ struct PointSamplingOptions {
   /// Uniform: the largest distance of neighbouring samples (along three lines of each patch each way); 0: as
   /// far as the rectangles reach, so that each covers what lies between it and the next.
   double spacing = 0;
-  /// Adaptive: cells across a trim are halved to this size, by which their rectangles may stand out; 0: δ
-  /// / 8.
+  /// Adaptive: cells across a trim are halved to this size, by which their rectangles may stand out; so are
+  /// cells at a side of the surface over which their rectangles stand out farther; 0: δ / 8.
   double border = 0;
   /// Certified: the largest distance from the surface.
   double tolerance = 0;

@@ -321,6 +321,21 @@ TEST(Points, TooManyLightsAreRefused) {
             StatusCode::invalid_argument);
 }
 
+TEST(BallRadius, OfTheOnlySampleOfAPatchIsNoLargerThanOthers) {
+  PartPoints part;
+  for (int i = 0; i < 5; ++i) {
+    DifferentialPoint p;
+    p.position = {0.1 * i, 0, 0};
+    p.half_u = p.half_v = 2;
+    part.points.push_back(p);
+  }
+  part.grids = {{0, 1, 4}, {4, 1, 2}};
+  part.grid_points = {0, 1, 2, 3, kNoPoint, 4};
+  for (const float radius : ball_radii(part)) EXPECT_FLOAT_EQ(radius, 0.1F);
+  part.pruned = true;
+  for (const float radius : ball_radii(part)) EXPECT_FLOAT_EQ(radius, 4 * std::sqrt(2.0F));
+}
+
 TEST(BallRadius, ReachesTheFarthestSampleAround) {
   const SphereOfPoints sphere(PointMethod::uniform, 0.1);
   const PartPoints& part = sphere.points.parts[0];

@@ -279,6 +279,31 @@ TEST(AdaptivePoints, StandOutOverTrimsByTheBorderAtMost) {
       }
 }
 
+TEST(AdaptivePoints, StandOutOverTheSidesOfASurfaceByTheBorderAtMost) {
+  // z = xy: the principal directions are at 45° to the sides at the middle.
+  BsplineSurface saddle;
+  saddle.degree_u = saddle.degree_v = 1;
+  saddle.count_u = saddle.count_v = 2;
+  saddle.knots_u = saddle.knots_v = {-1, -1, 1, 1};
+  saddle.poles = {{-1, -1, 1}, {-1, 1, -1}, {1, -1, -1}, {1, 1, 1}};
+  PointSamplingOptions options;
+  options.method = PointMethod::adaptive;
+  options.delta = 0.4;
+  options.border = 0.02;
+  const Model model = model_of({saddle}, {{-1, -1}, {1, 1}});
+  const PartPoints part = sampled(model, options).parts[0];
+  EXPECT_EQ(uncovered(model, part.points, 2000), 0);
+  double most = 0;
+  for (const DifferentialPoint& p : part.points)
+    for (const double s : {-1.0, 1.0})
+      for (const double t : {-1.0, 1.0}) {
+        const Vec3 corner = p.position + p.u * (s * p.half_u) + p.v * (t * p.half_v);
+        most = std::max({most, std::abs(corner.x), std::abs(corner.y)});
+      }
+  EXPECT_LT(most, 1.03);
+  EXPECT_GT(most, 1.002);
+}
+
 TEST(Points, AreTheSameForAnyNumberOfThreads) {
   for (const PointMethod method : {PointMethod::uniform, PointMethod::adaptive}) {
     PointSamplingOptions options;
