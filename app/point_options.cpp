@@ -75,10 +75,10 @@ void add_point_options(CLI::App& command, PointOptions& options, bool tolerance)
       ->type_name("D")
       ->group(group);
   command
-      .add_option(
-          "--border", options.border,
-          "Adaptive: how far rectangles may stand out over a face's borders (default: δ / 8; drawn, a "
-          "pixel)")
+      .add_option("--border", options.border,
+                  "Adaptive: how far rectangles may stand out over a face's borders (default: δ / 8; where "
+                  "the method "
+                  "is not given either, in pictures a pixel)")
       ->check(positive)
       ->type_name("B")
       ->group(group);

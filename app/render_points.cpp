@@ -74,8 +74,10 @@ class PointsPrimitive : public RenderPrimitive {
       const PointOptions options = with_defaults(input);
       PointSamplingOptions sampling = options.sampling(input.model);
       sampling.progress = input.progress;
-      // Rectangles stand out over borders by a pixel; but a close-up does not make a model's borders endless.
-      if (sampling.border == 0) sampling.border = std::max(pixel(input), sampling.delta / kFinestBorder);
+      // Of their own accord rectangles stand out over borders by a pixel; but a close-up does not make a
+      // model's borders endless.
+      if (sampling.border == 0 && input.options.points.method.empty())
+        sampling.border = std::max(pixel(input), sampling.delta / kFinestBorder);
       Result<MadePoints> made = make_points(input.model, sampling, options);
       if (!made.ok()) return made.status();
       points_ = std::move(made->scene);
