@@ -19,17 +19,21 @@ void MeshArena::want(std::size_t tree, std::span<const std::uint32_t> ranks) {
   }
 }
 
-bool MeshArena::load() {
+bool MeshArena::must_make_room() const {
   std::size_t coming = 0;
   for (const Place& p : wanted_)
     if (!blocks_[p.tree][p.block].there) coming += kMostLeafTriangles * kBlockLeaves;
-  const bool start_anew = coming > 0 && triangles_.size() + coming > kMostKept && !triangles_.empty();
-  if (start_anew) {
-    vertices_.clear(), triangles_.clear();
-    uploaded_vertices_ = uploaded_triangles_ = 0;
-    for (auto& tree : blocks_)
-      for (Loaded& block : tree) block.there = false;
-  }
+  return coming > 0 && triangles_.size() + coming > kMostKept && !triangles_.empty();
+}
+
+void MeshArena::make_room() {
+  vertices_.clear(), triangles_.clear();
+  uploaded_vertices_ = uploaded_triangles_ = 0;
+  for (auto& tree : blocks_)
+    for (Loaded& block : tree) block.there = false;
+}
+
+void MeshArena::load() {
   std::vector<Place> missing;
   for (const Place& p : wanted_) {
     Loaded& block = blocks_[p.tree][p.block];
@@ -49,7 +53,6 @@ bool MeshArena::load() {
     for (std::size_t i = 0; i < count; ++i) append(missing[first + i], unpacked[i]);
   }
   upload();
-  return start_anew;
 }
 
 void MeshArena::append(const Place& place, const MeshBlock& block) {

@@ -22,9 +22,13 @@ class MeshArena {
   /// Of a tree, the leaves (ascending ranks) whose triangles the next frame needs. Call for each, then
   /// load().
   void want(std::size_t tree, std::span<const std::uint32_t> ranks);
+  /// Whether with what is wanted it would hold more than kMostKept.
+  bool must_make_room() const;
+  /// Forgets all triangles: indices given out before no longer hold.
+  void make_room();
   /// Unpacks what is wanted and not there, on several threads, and uploads it. A block that is damaged has no
-  /// triangles. Returns whether triangles that had been there moved: indices given out before no longer hold.
-  bool load();
+  /// triangles.
+  void load();
 
   /// Indices into triangles() of a leaf that was wanted: [first, last).
   std::array<std::uint32_t, 2> triangles_of(std::size_t tree, std::uint32_t rank) const {

@@ -312,7 +312,8 @@ class PointCut::Walk {
 
 /// Above the chunks every frame walks anew. A node that is drawn there has a chunk of its own behind the
 /// others.
-void PointCut::walk_top(std::uint64_t node, std::vector<std::size_t>& active) {
+void PointCut::walk_top(std::uint64_t node, const Hidden& hidden, std::vector<std::size_t>& active) {
+  if (hidden && hidden(node_at(node))) return;
   if (node >= first_chunk_) {
     const auto chunk = static_cast<std::size_t>(node - first_chunk_);
     active.push_back(chunk);
@@ -323,7 +324,7 @@ void PointCut::walk_top(std::uint64_t node, std::vector<std::size_t>& active) {
   const Decision d = decide(node_at(node), tree_->shape().is_leaf(node));
   if (d.open) {
     for (std::uint64_t k = 0; k < tree_->shape().child_count(node); ++k)
-      walk_top(TreeShape::first_child(node) + k, active);
+      walk_top(TreeShape::first_child(node) + k, hidden, active);
     return;
   }
   if (d.state == State::culled) return;
@@ -360,7 +361,7 @@ void PointCut::add_motion(const CutView& last) {
   }
 }
 
-void PointCut::update(const CutView& view, bool coherent) {
+void PointCut::update(const CutView& view, bool coherent, const Hidden& hidden) {
   const CutView last = view_;
   view_ = view;
   const bool comparable = has_view_ && coherent && last.perspective == view.perspective &&
@@ -377,7 +378,7 @@ void PointCut::update(const CutView& view, bool coherent) {
   segments_.clear();
   visited_ = 0;
   std::vector<std::size_t> active;
-  walk_top(0, active);
+  walk_top(0, hidden, active);
   const auto run = [&](std::size_t i) {
     Chunk& chunk = chunks_[active[i]];
     chunk.visited = 0;

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -46,8 +47,11 @@ class PointCut {
  public:
   explicit PointCut(std::shared_ptr<const PointTree> tree);
 
-  /// Finds the front for a view, on several threads. Without `coherent` from the root.
-  void update(const CutView& view, bool coherent);
+  /// Whether nothing within a node's sphere can be seen, because of what has been drawn already.
+  using Hidden = std::function<bool(const EncodedNode& node)>;
+  /// Finds the front for a view, on several threads. Without `coherent` from the root. Subtrees that are
+  /// hidden are left out.
+  void update(const CutView& view, bool coherent, const Hidden& hidden = {});
 
   /// Points are nodes, leaves are those whose triangles are drawn, by rank; depth-first.
   template <class Points, class Leaves>
@@ -98,7 +102,7 @@ class PointCut {
   };
   class Walk;
 
-  void walk_top(std::uint64_t node, std::vector<std::size_t>& active);
+  void walk_top(std::uint64_t node, const Hidden& hidden, std::vector<std::size_t>& active);
   void add_motion(const CutView& last);
   Decision decide(const EncodedNode& node, bool leaf) const;
   EncodedNode node_at(std::uint64_t index) const;

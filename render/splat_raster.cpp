@@ -70,6 +70,12 @@ bool is_usable(const Projected& p) {
          std::abs(p.y) < kGuardBand;
 }
 
+/// Rounded down, without a call into a library. Of less than 2^31 in size.
+std::int32_t floor_of(double v) {
+  constexpr double kShift = 4294967296.0;
+  return static_cast<std::int32_t>(static_cast<std::int64_t>(v + kShift) - (std::int64_t{1} << 32));
+}
+
 /// Rows that one task wrote to.
 struct Rows {
   int first = std::numeric_limits<int>::max(), last = 0;
@@ -86,7 +92,12 @@ class SplatRaster::Points {
       : raster_(raster),
         projection_(projection),
         projector_(projection, raster.width_, raster.height_),
-        splatting_(splatting) {}
+        splatting_(splatting) {
+    const auto row = [](const std::array<double, 4>& r) { return Vec3{r[0], r[1], r[2]}; };
+    const Vec3 x = row(projection.x), y = row(projection.y), z = row(projection.depth);
+    const Vec3 turns[] = {cross(y, z), cross(z, x), cross(x, y)};
+    for (std::size_t k = 0; k < 3; ++k) cross_[k] = turns[k];
+  }
 
   void add(const EncodedNode& node, std::uint32_t number) {
     const Vec3 clip = projector_.clip(node_center(node));
@@ -96,24 +107,53 @@ class SplatRaster::Points {
     const double steps = node_radius(node);
     const double radius = steps * projection_.pixels_per_step / (projection_.perspective ? clip.z : 1);
     if (radius <= 0.5) return middle(at, key_of(at.z, number));
-    if (splatting_ == Splatting::simple) return disc(at, radius, key_of(at.z, number));
+    if (splatting_ == Splatting::simple) {
+      if (projection_.flat)
+        return disc(at, radius, [key = key_of(at.z, number)](double, double) { return key; });
+      const Tilt tilt = tilt_of(node, clip, at, steps);
+      return disc(at, radius, [&](double dx, double dy) {
+        const double out = (dx * dx + dy * dy) / (radius * radius);
+        const double z =
+            at.z + std::clamp(tilt.x * dx + tilt.y * dy, -tilt.reach, tilt.reach) - tilt.reach * out;
+        return key_of(std::max(z, tilt.least), number);
+      });
+    }
     // Behind the whole sphere, so that no neighbour's middle is hidden.
     const double behind = projector_.buffer_depth(clip.z + steps * projection_.depth_per_step);
-    if (behind > 0) disc(at, radius, key_of(behind, number | kHole));
+    if (behind > 0) disc(at, radius, [key = key_of(behind, number | kHole)](double, double) { return key; });
     middle(at, key_of(at.z, number));
   }
   const Rows& rows() const { return rows_; }
 
  private:
   void middle(const Projected& at, std::uint64_t key) {
-    const int x = static_cast<int>(std::floor(at.x)), y = static_cast<int>(std::floor(at.y));
+    const int x = floor_of(at.x), y = floor_of(at.y);
     if (x < 0 || y < 0 || x >= raster_.width_ || y >= raster_.height_) return;
     rows_.add(y, y + 1);
     keep_larger(pixel(x, y), key);
   }
 
+  /// How the depth buffer's value changes over a disc in its tangent plane, by no more than `reach`: the
+  /// sphere's.
+  struct Tilt {
+    double x = 0, y = 0, reach = 0, least = 0;
+  };
+  Tilt tilt_of(const EncodedNode& node, const Vec3& clip, const Projected& at, double radius) const {
+    Tilt tilt;
+    tilt.least = projector_.buffer_depth(clip.z + 2 * radius * projection_.depth_per_step);
+    tilt.reach = at.z - projector_.buffer_depth(clip.z + radius * projection_.depth_per_step);
+    // The plane, m·(clip − its middle) = 0: a perspective picture has 1 / depth linear on it.
+    const Vec3 n = node_normal(node), m{dot(n, cross_[0]), dot(n, cross_[1]), dot(n, cross_[2])};
+    const auto& t = projection_.depth_terms;
+    const double scale = projection_.perspective ? t[2] / dot(m, clip) : -t[1] / m.z;
+    const double x = scale * m.x * 2 / raster_.width_, y = scale * m.y * 2 / raster_.height_;
+    if (std::isfinite(x) && std::isfinite(y)) tilt.x = x, tilt.y = y;
+    return tilt;
+  }
+
   /// The pixels whose centres lie within; at least the one that the middle lies in.
-  void disc(const Projected& at, double radius, std::uint64_t key) {
+  template <class Key>
+  void disc(const Projected& at, double radius, const Key& key) {
     const int y0 = std::max(0, static_cast<int>(std::ceil(at.y - radius - 0.5)));
     const int y1 = std::min(raster_.height_, static_cast<int>(std::floor(at.y + radius - 0.5)) + 1);
     if (y0 < y1) rows_.add(y0, y1);
@@ -121,9 +161,9 @@ class SplatRaster::Points {
       const double dy = y + 0.5 - at.y, half = std::sqrt(std::max(0.0, radius * radius - dy * dy));
       const int x0 = std::max(0, static_cast<int>(std::ceil(at.x - half - 0.5)));
       const int x1 = std::min(raster_.width_, static_cast<int>(std::floor(at.x + half - 0.5)) + 1);
-      for (int x = x0; x < x1; ++x) keep_larger(pixel(x, y), key);
+      for (int x = x0; x < x1; ++x) keep_larger(pixel(x, y), key(x + 0.5 - at.x, dy));
     }
-    middle(at, key);
+    middle(at, key(0, 0));
   }
 
   std::uint64_t& pixel(int x, int y) {
@@ -135,6 +175,7 @@ class SplatRaster::Points {
   const SplatProjection& projection_;
   Projector projector_;
   Splatting splatting_;
+  std::array<Vec3, 3> cross_;  ///< take normals from the grid to clip coordinates
   Rows rows_;
 };
 
@@ -149,27 +190,34 @@ class SplatRaster::Triangles {
         vertices_(vertices) {}
 
   void add(const SplatTriangle& triangle, std::uint32_t number) {
-    const Known* corners[3];
+    Snapped corners[3];
     bool whole = true;
-    Known copies[3];
     for (std::size_t k = 0; k < 3; ++k) {
-      copies[k] = vertex(triangle[k]);
-      corners[k] = &copies[k];
-      whole = whole && copies[k].usable;
+      const Known& known = vertex(triangle[k]);
+      corners[k] = known.at;
+      whole = whole && known.usable;
     }
     if (whole)
-      fill(corners[0]->at, corners[1]->at, corners[2]->at, number);
+      fill(corners, number);
     else
-      cut(copies, number);
+      cut({vertex(triangle[0]).clip, vertex(triangle[1]).clip, vertex(triangle[2]).clip}, number);
   }
   const Rows& rows() const { return rows_; }
 
  private:
+  /// In parts of a pixel.
+  struct Snapped {
+    std::int32_t x = 0, y = 0;
+    double z = 0;
+  };
+  static Snapped snap(const Projected& p) {
+    return {floor_of(p.x * kSubpixels + 0.5), floor_of(p.y * kSubpixels + 0.5), p.z};
+  }
   struct Known {
     std::uint32_t index = 0xffffffffu;
     bool usable = false;  ///< in front of the nearest depth, in the guard band, and not cut away
+    Snapped at;
     Vec3 clip;
-    Projected at;
   };
   static constexpr std::size_t kKnown = 1024;
 
@@ -183,14 +231,16 @@ class SplatRaster::Triangles {
     known.index = index;
     known.clip = projector_.clip(node_center(node));
     known.usable = !projection_.perspective || known.clip.z >= projection_.nearest_depth;
-    if (known.usable) known.at = projector_.project(known.clip);
-    known.usable = known.usable && is_usable(known.at) && !projector_.is_cut_away(known.clip);
+    if (!known.usable) return known;
+    const Projected at = projector_.project(known.clip);
+    known.usable = is_usable(at) && !projector_.is_cut_away(known.clip);
+    if (known.usable) known.at = snap(at);
     return known;
   }
 
   /// Against the nearest depth, the guard band's four sides and the sections, in clip coordinates.
-  void cut(const Known* corners, std::uint32_t number) {
-    std::vector<Vec3> polygon{corners[0].clip, corners[1].clip, corners[2].clip}, next;
+  void cut(std::vector<Vec3> polygon, std::uint32_t number) {
+    std::vector<Vec3> next;
     const double sx = 0.5 * raster_.width_, sy = 0.5 * raster_.height_;
     const double bx = kGuardBand / 2 / sx, by = kGuardBand / 2 / sy;
     const std::size_t sides = 5 + projection_.sections.size();
@@ -224,7 +274,9 @@ class SplatRaster::Triangles {
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
       const Projected p[3] = {projector_.project(polygon[0]), projector_.project(polygon[i]),
                               projector_.project(polygon[i + 1])};
-      if (is_usable(p[0]) && is_usable(p[1]) && is_usable(p[2])) fill(p[0], p[1], p[2], number);
+      if (!is_usable(p[0]) || !is_usable(p[1]) || !is_usable(p[2])) continue;
+      const Snapped corners[3] = {snap(p[0]), snap(p[1]), snap(p[2])};
+      fill(corners, number);
     }
   }
 
@@ -243,14 +295,9 @@ class SplatRaster::Triangles {
     return e;
   }
 
-  void fill(const Projected& p0, const Projected& p1, const Projected& p2, std::uint32_t number) {
-    const auto snapped = [](double v) { return static_cast<std::int64_t>(std::llround(v * kSubpixels)); };
-    std::int64_t x[3] = {snapped(p0.x), snapped(p1.x), snapped(p2.x)},
-                 y[3] = {snapped(p0.y), snapped(p1.y), snapped(p2.y)};
-    double z[3] = {p0.z, p1.z, p2.z};
-    const std::int64_t area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
-    if (area == 0) return;
-    if (area < 0) std::swap(x[1], x[2]), std::swap(y[1], y[2]), std::swap(z[1], z[2]);
+  void fill(const Snapped* p, std::uint32_t number) {
+    std::int64_t x[3] = {p[0].x, p[1].x, p[2].x}, y[3] = {p[0].y, p[1].y, p[2].y};
+    double z[3] = {p[0].z, p[1].z, p[2].z};
     // Pixels whose centres lie in the box.
     const auto first = [](std::int64_t lo) { return (lo + kSubpixels / 2 - 1) >> kSubpixelBits; };
     const auto last = [](std::int64_t hi) { return ((hi - kSubpixels / 2) >> kSubpixelBits) + 1; };
@@ -259,6 +306,9 @@ class SplatRaster::Triangles {
     const std::int64_t y0 = std::max<std::int64_t>(0, first(std::min({y[0], y[1], y[2]})));
     const std::int64_t y1 = std::min<std::int64_t>(raster_.height_, last(std::max({y[0], y[1], y[2]})));
     if (x0 >= x1 || y0 >= y1) return;
+    const std::int64_t area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
+    if (area == 0) return;
+    if (area < 0) std::swap(x[1], x[2]), std::swap(y[1], y[2]), std::swap(z[1], z[2]);
     rows_.add(static_cast<int>(y0), static_cast<int>(y1));
     const Edge e[3] = {edge(x[0], y[0], x[1], y[1]), edge(x[1], y[1], x[2], y[2]),
                        edge(x[2], y[2], x[0], y[0])};
@@ -329,12 +379,11 @@ void SplatRaster::begin(int width, int height) {
 void SplatRaster::add_points(const SplatProjection& projection, std::span<const EncodedNode> nodes,
                              std::uint32_t first, Splatting splatting) {
   const std::size_t tasks = (nodes.size() + kTask - 1) / kTask;
-  std::mutex lock;
   parallel_for(tasks, [&](std::size_t task) {
     Points points(*this, projection, splatting);
     for (std::size_t i = task * kTask; i < std::min(nodes.size(), (task + 1) * kTask); ++i)
       points.add(nodes[i], first + static_cast<std::uint32_t>(i));
-    const std::lock_guard guard(lock);
+    const std::lock_guard guard(rows_lock_);
     if (points.rows().first < points.rows().last)
       rows_ = {std::min(rows_[0], points.rows().first), std::max(rows_[1], points.rows().last)};
   });
@@ -344,12 +393,11 @@ void SplatRaster::add_triangles(const SplatProjection& projection, std::span<con
                                 std::span<const SplatTriangle> triangles, std::span<const std::uint32_t> list,
                                 std::uint32_t first) {
   const std::size_t tasks = (list.size() + kTask - 1) / kTask;
-  std::mutex lock;
   parallel_for(tasks, [&](std::size_t task) {
     Triangles filler(*this, projection, vertices);
     for (std::size_t i = task * kTask; i < std::min(list.size(), (task + 1) * kTask); ++i)
       filler.add(triangles[list[i]], kTriangle | (first + static_cast<std::uint32_t>(i)));
-    const std::lock_guard guard(lock);
+    const std::lock_guard guard(rows_lock_);
     if (filler.rows().first < filler.rows().last)
       rows_ = {std::min(rows_[0], filler.rows().first), std::max(rows_[1], filler.rows().last)};
   });

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -25,12 +26,15 @@ struct SplatProjection {
   double nearest_depth = 0;    ///< triangles are cut here; perspective only
   double pixels_per_step = 1;  ///< of a length of one step; in perspective at the depth 1
   double depth_per_step = 1;   ///< the most that a step changes the depth
+  bool flat = false;  ///< discs face the viewer, as QSplat's do; else they lie in their tangent planes
   /// What has a negative value of any of them, of clip X, Y, the depth and 1, is cut away.
   std::span<const std::array<double, 4>> sections;
 };
 
 enum class Splatting {
-  simple,      ///< a disc of the sphere's size
+  /// A disc of the sphere's size; where discs overlap, the one whose middle is nearest is seen, if they are
+  /// of one surface
+  simple,
   visibility,  ///< the disc, marked as a hole and behind what it stands for; and its middle pixel
 };
 
@@ -49,6 +53,8 @@ class SplatRaster {
 
   /// An empty picture; what the last one left is cleared.
   void begin(int width, int height);
+
+  // Several threads may add at once.
 
   /// Points with the numbers first, first + 1, …; below kHole.
   void add_points(const SplatProjection& projection, std::span<const EncodedNode> nodes, std::uint32_t first,
@@ -71,6 +77,7 @@ class SplatRaster {
   class Points;
   class Triangles;
   int width_ = 0, height_ = 0;
+  std::mutex rows_lock_;
   std::array<int, 2> rows_{0, 0};
   std::vector<std::uint64_t> pixels_;
 };

@@ -1,18 +1,21 @@
 #include "tree_layer.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstring>
 
 #include "../core/parallel.h"
 #include "layer.h"
+#include "occlusion.h"
 #include "splat_raster.h"
 #include "tree_lists.h"
 
 namespace dupin {
 namespace {
 
-constexpr std::size_t kMostPoints = SplatRaster::kHole, kMostTriangles = SplatRaster::kTriangle;
+/// Placements are drawn in so many turns, each of which may hide those that follow.
+constexpr std::size_t kBatches = 16;
 
 double milliseconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -73,18 +76,22 @@ class TreeLayers::Impl : public Layer {
 
   Status find(const LayerPass& pass) override {
     const auto start = std::chrono::steady_clock::now();
-    lists_.find(pass.scene, pass.view, pass.options.sections, options_);
-    stats_.cut_ms = milliseconds_since(start);
-    const auto cut_done = std::chrono::steady_clock::now();
-    if (lists_.gather(pass.scene))
-      if (Status status = upload_lists(pass); !status.ok()) return status;
-    stats_.gather_ms = milliseconds_since(cut_done);
-    const auto gather_done = std::chrono::steady_clock::now();
-    rasterise(pass);
-    stats_.raster_ms = milliseconds_since(gather_done);
-    stats_.points = lists_.points().size(), stats_.triangles = lists_.triangles().size();
+    begin_picture(pass);
+    lists_.begin(pass, options_);
+    stats_.raster_ms = 0;
+    // Nearest first, so that what lies behind need not be looked at.
+    const std::span<const std::size_t> order = lists_.order();
+    const std::size_t step = std::max<std::size_t>(1, order.size() / kBatches);
+    for (std::size_t i = 0; i < order.size(); i += step)
+      if (Status status = add_trees(pass, order.subspan(i, std::min(step, order.size() - i))); !status.ok())
+        return status;
+    if (lists_.finish(pass.scene)) upload_lists();
+    stats_.cut_ms = lists_.cut_ms;
+    stats_.gather_ms = milliseconds_since(start) - stats_.cut_ms - stats_.raster_ms;
+    stats_.points = lists_.point_count(), stats_.triangles = lists_.triangle_count();
+    stats_.hidden = order.size() - lists_.drawn().size();
     stats_.visited = 0;
-    for (const PlacedTree& p : lists_.placed()) stats_.visited += p.cut.visited();
+    for (const std::size_t i : lists_.drawn()) stats_.visited += lists_.placed()[i].cut.visited();
     return damage();
   }
 
@@ -159,24 +166,48 @@ class TreeLayers::Impl : public Layer {
     grids_buffer_.assign(grids.data(), grids.size() * 4, GL_STATIC_DRAW);
   }
 
-  Status upload_lists(const LayerPass& pass) {
+  Status add_trees(const LayerPass& pass, std::span<const std::size_t> candidates) {
+    // Before anything has been drawn nothing can be hidden.
+    const bool hiding = options_.occlusion && !lists_.drawn().empty();
+    if (hiding) occlusion_.refresh(raster_);
+    std::vector<std::size_t> batch;
+    for (const std::size_t i : candidates)
+      if (!hiding || !occlusion_.hides(lists_.placed()[i].extent)) batch.push_back(i);
+    lists_.update(pass, batch, options_, hiding ? &occlusion_ : nullptr);
+    if (Status status = check_sizes(pass); !status.ok()) return status;
+    const auto start = std::chrono::steady_clock::now();
+    rasterise(pass, batch);
+    for (const std::size_t i : batch) occlusion_.mark(lists_.placed()[i].extent);
+    stats_.raster_ms += milliseconds_since(start);
+    return {};
+  }
+
+  Status check_sizes(const LayerPass& pass) const {
     const auto texels = static_cast<std::size_t>(pass.renderer.max_texels);
     const MeshArena& arena = lists_.arena();
-    if (lists_.points().size() > std::min<std::size_t>(SplatRaster::kHole, texels) ||
-        lists_.triangles().size() > std::min<std::size_t>(SplatRaster::kTriangle, texels) ||
-        std::max(arena.vertices().size(), arena.triangles().size()) > texels)
-      return {StatusCode::limit,
-              "more points and triangles in view than this OpenGL context's texture buffers can hold"};
-    const auto put = [](TexelBuffer& buffer, const auto& list) {
-      buffer.assign(list.data(), list.size() * sizeof(list[0]), GL_STREAM_DRAW);
+    if (lists_.point_count() <= std::min<std::size_t>(SplatRaster::kHole, texels) &&
+        lists_.triangle_count() <= std::min<std::size_t>(SplatRaster::kTriangle, texels) &&
+        std::max(arena.vertices().size(), arena.triangles().size()) <= texels)
+      return {};
+    return {StatusCode::limit,
+            "more points and triangles in view than this OpenGL context's texture buffers can hold"};
+  }
+
+  void upload_lists() {
+    points_buffer_.reserve(lists_.point_count() * sizeof(EncodedNode), GL_STREAM_DRAW);
+    extras_buffer_.reserve(lists_.point_count() * sizeof(PointExtra), GL_STREAM_DRAW);
+    drawn_buffer_.reserve(lists_.triangle_count() * sizeof(DrawnTriangle), GL_STREAM_DRAW);
+    const auto put = [](TexelBuffer& buffer, std::size_t at, const auto& list) {
+      if (!list.empty()) buffer.write(at * sizeof(list[0]), list.data(), list.size() * sizeof(list[0]));
     };
-    put(points_buffer_, lists_.points());
-    put(extras_buffer_, lists_.extras());
-    put(drawn_buffer_, lists_.triangles());
+    for (const std::size_t i : lists_.drawn()) {
+      const PlacedTree& p = lists_.placed()[i];
+      put(points_buffer_, p.first_point, p.points), put(extras_buffer_, p.first_point, p.extras);
+      put(drawn_buffer_, p.first_triangle, p.triangles);
+    }
     std::vector<TreeRun> runs = lists_.point_runs();
     runs.insert(runs.end(), lists_.triangle_runs().begin(), lists_.triangle_runs().end());
-    put(runs_buffer_, runs);
-    return {};
+    runs_buffer_.assign(runs.data(), runs.size() * sizeof(TreeRun), GL_STREAM_DRAW);
   }
 
   SplatProjection projection(const LayerPass& pass, const PlacedTree& p) const {
@@ -193,24 +224,27 @@ class TreeLayers::Impl : public Layer {
     projection.pixels_per_step = p.view.pixels_per_step;
     projection.depth_per_step = length(p.camera.depth.n) * grid.step;
     projection.sections = sections_;
+    projection.flat = p.cut.tree().info().kind == PointTreeKind::qsplat;
     return projection;
   }
 
-  void rasterise(const LayerPass& pass) {
+  void begin_picture(const LayerPass& pass) {
     raster_.begin(pass.view.width, pass.view.height);
+    occlusion_.begin(pass.view.width, pass.view.height);
     sections_.clear();
     for (const DrawOptions::Section& section : pass.options.sections)
       sections_.push_back(section_terms(section, pass.view));
+  }
+
+  void rasterise(const LayerPass& pass, std::span<const std::size_t> batch) {
     const Splatting splatting = options_.reconstruct ? Splatting::visibility : Splatting::simple;
     const MeshArena& arena = lists_.arena();
-    parallel_for(lists_.placed().size(), [&](std::size_t i) {
-      const PlacedTree& p = lists_.placed()[i];
-      if (p.points + p.triangles == 0) return;
+    parallel_for(batch.size(), [&](std::size_t i) {
+      const PlacedTree& p = lists_.placed()[batch[i]];
+      if (p.points.empty() && p.triangles.empty()) return;
       const SplatProjection projection = this->projection(pass, p);
-      raster_.add_points(projection, std::span(lists_.points()).subspan(p.first_point, p.points),
-                         static_cast<std::uint32_t>(p.first_point), splatting);
-      raster_.add_triangles(projection, arena.vertices(), arena.triangles(),
-                            std::span(lists_.triangle_indices()).subspan(p.first_triangle, p.triangles),
+      raster_.add_points(projection, p.points, static_cast<std::uint32_t>(p.first_point), splatting);
+      raster_.add_triangles(projection, arena.vertices(), arena.triangles(), p.triangle_indices,
                             static_cast<std::uint32_t>(p.first_triangle));
     });
   }
@@ -258,6 +292,7 @@ class TreeLayers::Impl : public Layer {
   const Scene::Impl* scene_ = nullptr;  ///< whose buffers these are
   TreeLists lists_;
   SplatRaster raster_;
+  Occlusion occlusion_;
   std::vector<std::array<double, 4>> sections_;  ///< this pass's
   TexelBuffer points_buffer_, extras_buffer_, drawn_buffer_, runs_buffer_, grids_buffer_;
   GlTexture picture_;

@@ -18,13 +18,15 @@ struct TreeLayerOptions {
       true;  ///< also the smallest nodes are points below the threshold; else always triangles, as published
   bool reconstruct =
       false;  ///< visibility splatting: points of one pixel, and what is between them filled from around
-  bool coherent = true;  ///< a frame starts from the last one's nodes; the picture is the same
+  bool occlusion = true;  ///< leave out placements that nearer ones hide; the picture is the same
+  bool coherent = true;   ///< a frame starts from the last one's nodes; the picture is the same
 };
 
 /// What the last frame did.
 struct TreeLayerStats {
   std::uint64_t points = 0, triangles = 0;  ///< drawn, in all placements
   std::uint64_t visited = 0;                ///< nodes whose bounds were looked at
+  std::uint64_t hidden = 0;                 ///< placements in view that nearer ones hide
   double cut_ms = 0, gather_ms = 0, raster_ms = 0;
 };
 

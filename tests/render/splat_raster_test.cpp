@@ -71,6 +71,24 @@ TEST(SplatRaster, TheNearestIsKeptAndOfEqualOnesTheFirst) {
   EXPECT_EQ(number_at(raster, 11, 9), 0u);
 }
 
+TEST(SplatRaster, DiscsOfOneSlantedPlaneMeetHalfway) {
+  PointNode a;
+  a.radius = 8;
+  a.normal = normalized(Vec3{1, 0, 1});
+  PointNode b = a;
+  a.center = {20, 20, 40}, b.center = {26, 20, 34};
+  SplatProjection tilted = flat(), facing = flat();
+  facing.flat = true;
+  const EncodedNode nodes[] = {encode(a), encode(b)};
+  SplatRaster raster;
+  raster.begin(kSize, kSize);
+  raster.add_points(tilted, nodes, 0, Splatting::simple);
+  for (int x = 13; x < 33; ++x) EXPECT_EQ(number_at(raster, x, 20), x < 23 ? 0u : 1u) << x;
+  raster.begin(kSize, kSize);
+  raster.add_points(facing, nodes, 0, Splatting::simple);
+  EXPECT_EQ(number_at(raster, 27, 20), 0u) << "the nearer one reaches over the other's middle";
+}
+
 TEST(SplatRaster, HolesLieBehindTheMiddlesOfTheirNeighbours) {
   SplatRaster raster;
   raster.begin(kSize, kSize);

@@ -202,6 +202,46 @@ TEST(TreeLayer, CoherentFramesAreTheFreshOnes) {
   EXPECT_LT(coherent.layers->stats().visited, fresh.stats().visited / 2);
 }
 
+/// Three in a row from the viewer away, and more around, of a mesh that is taken apart for walking.
+Model crowd() {
+  Model model = model_of(bumpy(60));
+  const Instance one = model.instances[0];
+  model.instances.clear();
+  for (int i = 0; i < 36; ++i) {
+    model.instances.push_back(one);
+    model.instances.back().to_world.translation = {1.6 * (i % 4), 1.6 * (i / 4 % 3), 1.6 * (i / 12)};
+  }
+  return model;
+}
+
+TEST(TreeLayer, WhatNearerPlacementsHideIsLeftOutAndNotMissed) {
+  const Model model = crowd();
+  for (const bool parallel : {false, true})
+    for (const bool reconstruct : {false, true}) {
+      TreeLayerOptions options;
+      options.threshold_px = 3, options.reconstruct = reconstruct;
+      Drawn hiding(model, options);
+      options.occlusion = false;
+      TreeLayers all_drawn({{*build_point_tree(model.parts[0].polygons, {}), 0}}, options);
+      const auto scene = hiding.gl.renderer->upload(model, SceneContent{nullptr, {all_drawn.layer()}});
+      ASSERT_TRUE(scene.ok());
+      for (int frame = 0; frame < 4; ++frame) {
+        Camera camera = looking(9 - 1.5 * frame, 0.3 * frame);
+        camera.target = {2.4, 1.6, 1.6};
+        camera.orthographic = parallel, camera.ortho_height = 6;
+        const Frame a = hiding.draw(camera), b = hiding.gl.draw(**scene, camera, everything());
+        EXPECT_EQ(a.primitive, b.primitive) << frame;
+        EXPECT_EQ(a.color, b.color) << frame;
+        EXPECT_EQ(a.depth, b.depth) << frame;
+        EXPECT_EQ(a.face, b.face) << frame;
+        const TreeLayerStats some = hiding.layers->stats(), all = all_drawn.stats();
+        EXPECT_LT(some.points + some.triangles, all.points + all.triangles) << frame;
+      }
+      EXPECT_GT(hiding.layers->stats().hidden, 0u);
+      EXPECT_EQ(all_drawn.stats().hidden, 0u);
+    }
+}
+
 TEST(TreeLayer, ThreadsAndRunsDoNotMatter) {
   const Model model = model_of(bumpy(60));
   TreeLayerOptions options;
