@@ -55,6 +55,8 @@ Surface point_surface(uint index, vec2 at) {
   vec3 x = node_axis(n), y = cross(n, x), e1 = cos(angle) * x + sin(angle) * y, e2 = cross(n, e1);
   vec2 p = vec2(dot(offset, e1), dot(offset, e2));
   vec3 normal = n - k.x * p.x * e1 - k.y * p.y * e2;
+  // A point whose middle is seen shows no back: beyond the outline its normals stay perpendicular to the ray.
+  if (slant < 0.0) normal -= d * (max(0.0, dot(normal, d)) / dd);
   result.normal = normalize(placed.to_view * normal);
   result.depth = depth_of(placed, center + offset + n * (0.5 * dot(k, p * p)));
   result.curvature = k * length(placed.to_view[0]);  // per model unit: covectors shrink as placements stretch
