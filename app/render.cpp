@@ -100,7 +100,9 @@ DrawOptions RenderJob::draw_options() const {
   DrawOptions draw;
   draw.outputs = outputs();
   const auto shading = std::find(std::begin(kShadingNames), std::end(kShadingNames), options_.shading);
-  draw.shading = static_cast<Shading>(shading - std::begin(kShadingNames));
+  // What else it can be stands in colors that a kind of primitive has.
+  if (shading != std::end(kShadingNames))
+    draw.shading = static_cast<Shading>(shading - std::begin(kShadingNames));
   draw.edges = options_.edges;
   draw.background.reset();
   if (options_.background != "none") draw.background = options_.background_color();

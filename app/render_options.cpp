@@ -55,7 +55,8 @@ void add_quality_options(CLI::App& command, RenderOptions& options) {
   command
       .add_option("--primitive", options.primitive,
                   "auto, quadric; dp: the papers' flat differential points; square, rectangle, ellipse: "
-                  "splats; pop, qsplat: points and triangles of meshes; triangles: the tessellated reference")
+                  "splats; amg: textured domains; pop, qsplat: points and triangles of meshes; triangles: "
+                  "the tessellated reference")
       ->check(CLI::Validator(check_primitive, ""))
       ->type_name("NAME")
       ->capture_default_str()
@@ -88,6 +89,7 @@ void add_quality_options(CLI::App& command, RenderOptions& options) {
       ->check(CLI::IsMember({"auto", "catmull-clark", "loop"}))
       ->group(group);
   add_point_options(command, options.points, false);
+  add_amg_options(command, options.amg);
   command
       .add_option(
           "--point-shading", options.point_shading,
@@ -159,8 +161,13 @@ void add_look_options(CLI::App& command, RenderOptions& options) {
       ->delimiter(',')
       ->type_name("X,Y,Z,D")
       ->group(group);
-  command.add_option("--shading", options.shading, "What the colour shows")
-      ->check(CLI::IsMember({"lit", "normal", "k1", "k2", "mean", "gaussian", "zebra", "face", "primitive"}))
+  command
+      .add_option(
+          "--shading", options.shading,
+          "What the colour shows; of --primitive amg also its domains, mixed with their weights, and the "
+          "classifier, black at edges")
+      ->check(CLI::IsMember({"lit", "normal", "k1", "k2", "mean", "gaussian", "zebra", "face", "primitive",
+                             "domains", "classifier"}))
       ->capture_default_str()
       ->group(group);
 }
@@ -195,6 +202,11 @@ Status RenderOptions::check() const {
     return bad("--light takes X,Y,Z, up to " + std::to_string(kMostLights) + " times");
   if (sections.size() % 4 != 0 || sections.size() / 4 > kMostSections)
     return bad("--section takes X,Y,Z,D, up to " + std::to_string(kMostSections) + " times");
+  if (primitive != "amg" && (amg.given() || shading == "domains" || shading == "classifier"))
+    return bad("options of domains go with --primitive amg");
+  if (!amg.load.empty() &&
+      (amg.made_given() || !amg.save.empty() || shading == "domains" || shading == "classifier"))
+    return bad("the domains of --amg-load are drawn as they are");
   return check_points();
 }
 

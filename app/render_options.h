@@ -8,6 +8,7 @@
 
 #include "../nurbs/model.h"
 #include "../render/tree_layer.h"
+#include "amg_options.h"
 #include "point_options.h"
 #include "session.h"
 #include "view.h"
@@ -31,6 +32,7 @@ struct RenderOptions {
   std::vector<double> lights;    ///< x, y, z of each
   std::vector<double> sections;  ///< normal and offset of each
   PointOptions points;
+  AmgOptions amg;
   std::string point_shading = "published";
   TreeLayerOptions trees;
   std::string tree_folder;  ///< where meshes' trees are kept; empty: nowhere

@@ -9,6 +9,7 @@ const std::vector<PrimitiveKind>& primitive_kinds() {
       {{"auto", "quadric"}, make_quadric_primitive},
       {{"dp", "square", "rectangle", "ellipse"}, make_points_primitive},
       {{"pop", "qsplat"}, make_trees_primitive},
+      {{"amg"}, make_amg_primitive},
       {{"triangles"}, make_triangles_primitive}};
   return kinds;
 }

@@ -53,6 +53,7 @@ std::unique_ptr<RenderPrimitive> make_primitive(const RenderOptions& options);
 std::unique_ptr<RenderPrimitive> make_quadric_primitive(const RenderOptions& options);
 std::unique_ptr<RenderPrimitive> make_trees_primitive(const RenderOptions& options);
 std::unique_ptr<RenderPrimitive> make_triangles_primitive(const RenderOptions& options);
+std::unique_ptr<RenderPrimitive> make_amg_primitive(const RenderOptions& options);
 std::unique_ptr<RenderPrimitive> make_points_primitive(const RenderOptions& options);
 
 }  // namespace dupin::app

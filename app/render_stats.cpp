@@ -106,6 +106,14 @@ nlohmann::ordered_json to_json(const RenderStats& stats) {
     json["point_trees"] = {{"points", stats.points->points},         {"triangles", stats.points->triangles},
                            {"visited_nodes", stats.points->visited}, {"cut_ms", stats.points->cut_ms},
                            {"gather_ms", stats.points->gather_ms},   {"raster_ms", stats.points->raster_ms}};
+  if (stats.domains)
+    json["domains"] = {{"points", stats.domains->points},
+                       {"texels", stats.domains->texels},
+                       {"level", stats.domains->level},
+                       {"levels", stats.domains->levels},
+                       {"deviation_99", stats.domains->deviation_99},
+                       {"decomposition_s", stats.domains->decomposition},
+                       {"construction_s", stats.domains->construction}};
   json["error"] = to_json(stats.error);
   json["time_s"] = to_json(stats.times);
   json["peak_rss_bytes"] = peak_resident_bytes();

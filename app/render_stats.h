@@ -48,6 +48,14 @@ struct SampledPoints {
   double sample_seconds = 0, simplify_seconds = 0;
 };
 
+/// --primitive amg, all parts together.
+struct DomainStats {
+  std::size_t points = 0, texels = 0;
+  std::size_t level = 0, levels = 0;  ///< the finest that is drawn, and how many the part with most has
+  double deviation_99 = 0;            ///< the largest of the parts', in their own units (DomainSet)
+  double decomposition = 0, construction = 0;  ///< seconds
+};
+
 struct RenderStats {
   std::vector<std::string> files;
   FaceReport faces;
@@ -56,6 +64,7 @@ struct RenderStats {
   std::optional<CertifiedError> error;   ///< none for triangles
   std::optional<TreeLayerStats> points;  ///< of meshes' point trees, in the last frame
   std::optional<SampledPoints> sampled;
+  std::optional<DomainStats> domains;
   StageTimes times;
   int width = 0, height = 0;
   std::uint64_t covered_pixels = 0;

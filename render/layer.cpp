@@ -1,5 +1,6 @@
 #include "layer.h"
 
+#include "domain_layer.h"
 #include "point_layer.h"
 
 namespace dupin {
@@ -11,6 +12,12 @@ Result<std::vector<std::shared_ptr<Layer>>> make_layers(const Model& model, cons
       return {StatusCode::invalid_argument,
               "the points are not those of this model: the numbers of parts differ"};
     layers.push_back(make_point_layer(content.points));
+  }
+  if (content.domains.scene) {
+    if (content.domains.scene->parts.size() != model.parts.size())
+      return {StatusCode::invalid_argument,
+              "the domains are not those of this model: the numbers of parts differ"};
+    layers.push_back(make_domain_layer(content.domains));
   }
   if (layers.size() > kMostLayers)
     return {StatusCode::limit, "a scene can have " + std::to_string(kMostLayers) + " layers"};

@@ -23,6 +23,7 @@
 #include "../nurbs/model.h"
 #include "../sampling/differential_point.h"
 #include "../sampling/quadric_dp.h"
+#include "../simplify/domain_primitives.h"
 #include "context.h"
 
 namespace dupin {
@@ -186,6 +187,23 @@ struct PointContent {
   bool published = true;
 };
 
+/// How domains that overlap become one surface.
+enum class DomainBlend {
+  surface,    ///< all that a pixel's place belongs to, weighted with Ψ, at the place itself
+  published,  ///< flat rectangles front to back, blended with their neighbors, then locked (figure 10)
+  opaque,     ///< none: the nearest hides the others
+};
+
+/// Domain primitives (simplify/domain_primitives.h).
+struct DomainContent {
+  const DomainScene* scene = nullptr;  ///< one entry a part of the model
+  DomainBlend blend = DomainBlend::surface;
+  bool normal_maps = true;  ///< else each domain has the normal of its plane
+  bool heights = true;      ///< else each is flat
+  double tolerance_px =
+      0.5;  ///< of a part's levels the coarsest is drawn whose errors and texels are smaller
+};
+
 /// What a scene is drawn from, beside its model: one entry a kind of representation.
 struct SceneContent {
   /// One entry a part of the model.
@@ -193,6 +211,7 @@ struct SceneContent {
   /// Further kinds, made with what stands in render/layer.h.
   std::vector<std::shared_ptr<Layer>> layers;
   PointContent points;
+  DomainContent domains;
 };
 
 class Renderer {

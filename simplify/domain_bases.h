@@ -20,6 +20,9 @@
 
 namespace dupin {
 
+/// The classifier of a flat surface: its largest value.
+inline constexpr double kFlatClassifier = 100;
+
 struct DecomposeOptions {
   std::size_t neighbors = 50;  ///< k_min: the classifier looks at least at so many around each point, 3 …
   double radius =
@@ -61,6 +64,11 @@ class DomainBases {
   /// How far a point's surface may be taken to reach without another point, in the part's units; 0 for a
   /// single point.
   const std::vector<double>& spacings() const;
+  /// The surface between the points, three indices a triangle: those of the mesh, and of loose points those
+  /// of their fans, without what reaches over a gap. A point that coincides with others may have none.
+  const std::vector<std::uint32_t>& triangles() const;
+  /// Loose points at the rim of the triangles, or without any: their surface reaches half a spacing further.
+  const std::vector<bool>& rim() const;
   /// Seconds of each step.
   struct Times {
     double neighborhoods = 0, matrix = 0, multigrid = 0;

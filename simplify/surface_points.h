@@ -22,6 +22,9 @@ struct SurfacePoints {
   std::size_t size() const { return positions.size(); }
 };
 
+/// As many points as one decomposition is meant for.
+inline constexpr std::size_t kMostSourcePoints = 20'000'000;
+
 /// ok if every list is of the right length, every index in range and every number finite; else what is wrong.
 Status check(const SurfacePoints& points);
 

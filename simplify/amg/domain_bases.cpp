@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "coarsening.h"
+#include "fan_triangles.h"
 #include "neighborhoods.h"
 #include "stiffness.h"
 
@@ -18,6 +19,8 @@ class DomainBases::Impl {
   std::vector<Sparse<double>> prolongations;  ///< from finer to coarser
   std::vector<double> classifier, spacings;
   std::vector<Vec3> normals;
+  std::vector<std::uint32_t> triangles;
+  std::vector<bool> rim;
   Times times;
 };
 
@@ -66,6 +69,19 @@ std::vector<T> of_originals(const std::vector<T>& values, const std::vector<std:
   return result;
 }
 
+/// The mesh's own triangles, and those between loose points, each such point standing for all that coincide.
+void keep_surface(const SurfacePoints& points, const amg::UniquePoints& unique,
+                  const amg::Neighborhoods& around, DomainBases::Impl& impl) {
+  const amg::FanTriangles fans = amg::fan_triangles(unique, around);
+  std::vector<std::uint32_t> original(unique.positions.size());
+  impl.rim.assign(points.size(), false);
+  for (std::size_t i = points.size(); i-- > 0;) original[unique.unique_of[i]] = static_cast<std::uint32_t>(i);
+  for (std::uint32_t u = 0; u < original.size(); ++u) impl.rim[original[u]] = fans.rim[u];
+  impl.triangles = points.triangles;
+  impl.triangles.reserve(impl.triangles.size() + fans.triangles.size());
+  for (const std::uint32_t u : fans.triangles) impl.triangles.push_back(original[u]);
+}
+
 Status coarsen(Sparse<amg::Coupling> couplings, const std::vector<double>& classifiers,
                const Progress& progress, std::vector<Sparse<double>>& prolongations) {
   auto multigrid = amg::Multigrid::start();
@@ -103,6 +119,12 @@ const std::vector<Vec3>& DomainBases::normals() const {
 }
 const std::vector<double>& DomainBases::spacings() const {
   return impl_->spacings;
+}
+const std::vector<std::uint32_t>& DomainBases::triangles() const {
+  return impl_->triangles;
+}
+const std::vector<bool>& DomainBases::rim() const {
+  return impl_->rim;
 }
 const DomainBases::Times& DomainBases::times() const {
   return impl_->times;
@@ -148,6 +170,7 @@ Result<DomainBases> decompose(const SurfacePoints& points, const DecomposeOption
         !done.ok())
       return done;
   impl->times.multigrid = lap(start);
+  keep_surface(points, unique, *around, *impl);
   impl->classifier = of_originals(around->classifiers, unique.unique_of);
   impl->spacings = of_originals(around->spacings, unique.unique_of);
   for (double& s : impl->spacings) s *= unique.extent;

@@ -155,6 +155,11 @@ double classifier(const Moments& m, double radius) {
   return 1 / (kClassifierAlpha + kClassifierBeta * s * s);
 }
 
+bool together(const UniquePoints& points, const Neighborhoods& around, std::uint32_t a, std::uint32_t b) {
+  return distance(points.positions[a], points.positions[b]) <=
+         kLargestGap * std::min(around.spacings[a], around.spacings[b]);
+}
+
 Result<Neighborhoods> neighborhoods(const UniquePoints& points, const NeighborhoodOptions& options,
                                     const Progress& progress) {
   const std::size_t count = points.positions.size();

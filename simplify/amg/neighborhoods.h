@@ -49,6 +49,8 @@ inline constexpr std::size_t kSpacingNeighbor = 4;
 /// are of different islands, or on both sides of a gap.
 inline constexpr double kLargestGap = 4;
 
+bool together(const UniquePoints& points, const Neighborhoods& around, std::uint32_t a, std::uint32_t b);
+
 Result<Neighborhoods> neighborhoods(const UniquePoints& points, const NeighborhoodOptions& options,
                                     const Progress& progress);
 

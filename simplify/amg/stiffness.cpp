@@ -59,17 +59,15 @@ class Assembly {
   double mean_classifier(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
     return (around_.classifiers[a] + around_.classifiers[b] + around_.classifiers[c]) / 3;
   }
-  bool together(std::uint32_t a, std::uint32_t b) const {
-    return distance(at(a), at(b)) <= kLargestGap * std::min(around_.spacings[a], around_.spacings[b]);
-  }
-
   void add_fan(std::size_t f, std::vector<Link>& out) const {
     const Fans& fans = around_.fans;
     const std::uint32_t i = points_.loose[f], *star = fans.points.data() + fans.first[f];
     const std::size_t count = fans.first[f + 1] - fans.first[f], before = out.size();
     for (std::size_t k = 0; k + (fans.closed[f] ? 0 : 1) < count; ++k) {
       const std::uint32_t a = star[k], b = star[(k + 1) % count];
-      if (!together(i, a) || !together(i, b) || !together(a, b)) continue;
+      if (!together(points_, around_, i, a) || !together(points_, around_, i, b) ||
+          !together(points_, around_, a, b))
+        continue;
       const double c = mean_classifier(i, a, b), wa = half_cotangent(at(b), at(i), at(a)),
                    wb = half_cotangent(at(a), at(i), at(b));
       out.push_back({i, a, {c * wa, wa}});
@@ -78,7 +76,7 @@ class Assembly {
     if (out.size() > before) return;
     // No triangle: elements of a curve, as wide as they are long.
     for (std::size_t k = 0; k < count; ++k)
-      if (together(i, star[k]))
+      if (together(points_, around_, i, star[k]))
         out.push_back({i, star[k], {0.5 * (around_.classifiers[i] + around_.classifiers[star[k]]), 1}});
   }
 
