@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numeric>
 
@@ -62,11 +63,19 @@ std::vector<TileDomain> tile_domains(const DomainBasis& basis, const std::vector
       tiles.size(),
       [&](std::size_t d) {
         TileDomain& tile = tiles[d];
-        tile.points = domains[d].points;
+        // Only the few corners that are not the domain's own have to be sorted.
+        std::vector<std::uint32_t> others;
         for (const std::uint32_t t : tile.triangles)
-          tile.points.insert(tile.points.end(), triangles.begin() + 3 * t, triangles.begin() + 3 * t + 3);
-        std::sort(tile.points.begin(), tile.points.end());
-        tile.points.erase(std::unique(tile.points.begin(), tile.points.end()), tile.points.end());
+          for (std::size_t c = 0; c < 3; ++c) {
+            const std::uint32_t p = triangles[3 * std::size_t(t) + c];
+            const auto& own = of_point[p];
+            if (std::find(own.begin(), own.end(), static_cast<std::uint32_t>(d)) == own.end())
+              others.push_back(p);
+          }
+        std::sort(others.begin(), others.end());
+        others.erase(std::unique(others.begin(), others.end()), others.end());
+        std::merge(others.begin(), others.end(), domains[d].points.begin(), domains[d].points.end(),
+                   std::back_inserter(tile.points));
         for (const std::uint32_t p : tile.points)
           tile.values.push_back(static_cast<float>(value_at(basis, p, static_cast<std::uint32_t>(d))));
       },
@@ -158,16 +167,19 @@ class SetMaker {
     std::vector<std::vector<std::uint32_t>> of_point(points_.size());
     for (std::uint32_t t = 0; t < tiles_.size(); ++t)
       for (const std::uint32_t p : tiles_[t].points) of_point[p].push_back(t);
+    std::vector<std::uint32_t> met(tiles_.size(), ~0U);  // the last tile that each was found for
     for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
       const std::uint32_t d = domain_of_[t];
       std::vector<std::uint32_t> found;
       for (const std::uint32_t p : tiles_[t].points)
-        for (const std::uint32_t other : of_point[p])
-          if (other != t && (domain_of_[other] == d ||
-                             std::binary_search(neighbors[d].begin(), neighbors[d].end(), domain_of_[other])))
+        for (const std::uint32_t other : of_point[p]) {
+          if (other == t || met[other] == t) continue;
+          met[other] = t;
+          if (domain_of_[other] == d ||
+              std::binary_search(neighbors[d].begin(), neighbors[d].end(), domain_of_[other]))
             found.push_back(other);
+        }
       std::sort(found.begin(), found.end());
-      found.erase(std::unique(found.begin(), found.end()), found.end());
       set_.primitives[t].first_neighbor = static_cast<std::uint32_t>(set_.neighbors.size());
       set_.primitives[t].neighbors = static_cast<std::uint32_t>(found.size());
       set_.neighbors.insert(set_.neighbors.end(), found.begin(), found.end());
