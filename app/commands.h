@@ -18,6 +18,7 @@ void add_info_command(CLI::App& app, Command& chosen);
 void add_render_command(CLI::App& app, Command& chosen);
 void add_sample_command(CLI::App& app, Command& chosen);
 void add_tree_command(CLI::App& app, Command& chosen);
+void add_view_command(CLI::App& app, Command& chosen);
 void add_compare_command(CLI::App& app, Command& chosen);
 
 }  // namespace dupin::app

@@ -23,7 +23,7 @@ std::string usage_error(const CLI::App& app, int argc, char** argv, const CLI::P
       app.get_subcommands([&](const CLI::App* command) { return command->get_name() == first; });
   if (first[0] != '-' && commands.empty())
     return "'" + first +
-           "' is no command of this version (info, render, sample, compare, study and bench are); see dupin "
+           "' is no command of this version (info, render, sample, view, compare, study and bench are); see dupin "
            "--help";
   const bool named = first[0] != '-';
   return std::string(error.what()) + "; see dupin " + (named ? first + " " : "") + "--help";
@@ -41,6 +41,7 @@ int run(int argc, char** argv) {
   dupin::app::add_render_command(app, chosen);
   dupin::app::add_sample_command(app, chosen);
   dupin::app::add_tree_command(app, chosen);
+  dupin::app::add_view_command(app, chosen);
   dupin::app::add_compare_command(app, chosen);
   dupin::app::add_study_command(app, chosen);
   dupin::app::add_bench_command(app, chosen);

@@ -1,12 +1,7 @@
 // The C interface to models: reading, looking into and preparing them, and jobs.
-#include <sys/mman.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cmath>
-
 #include "../core/parallel.h"
 #include "c_handles.h"
+#include "memory_file.h"
 
 namespace dupin::c {
 namespace {
@@ -39,32 +34,6 @@ Status load(const std::string& path, const dupin_load_options* options, dupin_mo
   *model = new dupin_model{std::make_shared<const Model>(std::move(*read))};
   return {};
 }
-
-/// A file in memory, which other processes of the user can open by its path.
-class MemoryFile {
- public:
-  MemoryFile(const void* bytes, std::size_t size) : descriptor_(::memfd_create("dupin", MFD_CLOEXEC)) {
-    const char* at = static_cast<const char*>(bytes);
-    while (descriptor_ >= 0 && size > 0) {
-      const ssize_t written = ::write(descriptor_, at, size);
-      if (written < 0 && errno == EINTR) continue;
-      if (written <= 0) return;
-      at += written, size -= static_cast<std::size_t>(written);
-    }
-    whole_ = descriptor_ >= 0;
-  }
-  ~MemoryFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-  bool whole() const { return whole_; }
-  std::string path() const {
-    return "/proc/" + std::to_string(::getpid()) + "/fd/" + std::to_string(descriptor_);
-  }
-
- private:
-  int descriptor_;
-  bool whole_ = false;
-};
 
 const Instance* instance_of(const dupin_model* model, std::uint32_t number) {
   if (!model || number >= model->model->instances.size()) return nullptr;

@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "../../host/complete_model.h"
+#include "../../host/face_area.h"
 #include "../../host/load_job.h"
 #include "../../render/view.h"
 #include "../cad_import/files.h"
@@ -254,6 +255,24 @@ TEST(CompleteModel, SaysWhatIsWrong) {
       message([](Model& m) { m.parts[0].faces[0].uv_box.hi.x = std::numeric_limits<double>::infinity(); }),
       "");
   EXPECT_NE(message([](Model& m) { m.parts[1].surfaces[0] = {Sphere{{}, -1}}; }), "");
+}
+
+TEST(FaceArea, IsThatOfClosedForms) {
+  Model model = plate_and_ball(0.8);
+  ASSERT_TRUE(complete(model).ok());
+  constexpr double kPi = 3.14159265358979323846;
+  EXPECT_NEAR(face_area(model.parts[0], model.parts[0].faces[0]), 16, 1e-9);
+  EXPECT_NEAR(face_area(model.parts[1], model.parts[1].faces[0]), 4 * kPi * 0.64, 1e-6);
+  // A round hole, which the face lies outside of.
+  Part& plate = model.parts[0];
+  Edge& rim = plate.edges.emplace_back();
+  rim.curve = Curve3{CircleOf<Vec3>{{0.5, 0, 0}, {1, 0, 0}, {0, -1, 0}, 0.75}};
+  rim.t1 = 2 * kPi;
+  Trim trim;
+  trim.edge = static_cast<std::uint32_t>(plate.edges.size() - 1);
+  trim.pcurve = Curve2{CircleOf<Vec2>{{0.5, 0}, {1, 0}, {0, -1}, 0.75}};
+  plate.faces[0].loops.push_back({trim});
+  EXPECT_NEAR(face_area(plate, plate.faces[0]), 16 - kPi * 0.5625, 1e-6);
 }
 
 TEST(LoadJob, ReadsAndPreparesOnItsThread) {

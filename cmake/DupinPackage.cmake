@@ -1,0 +1,16 @@
+# A Debian package of what is installed: scripts/package, or cpack -G DEB in the build folder.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME dupin)
+set(CPACK_PACKAGE_VENDOR "Dupin")
+set(CPACK_PACKAGE_CONTACT "the authors of Dupin <dupin@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+# What is linked is found by dpkg-shlibdeps; OpenGL is loaded at run time.
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1 | libosmesa6, libgl1-mesa-dri | libosmesa6")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "shared-mime-info, bash-completion")
+include(CPack)
