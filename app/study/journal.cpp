@@ -21,19 +21,33 @@ std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// FNV-1a of a file's bytes: a model that has changed is another model.
+/// FNV-1a, byte after byte.
+class Digest {
+ public:
+  void add(const char* bytes, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i)
+      hash_ = (hash_ ^ static_cast<unsigned char>(bytes[i])) * 1099511628211ULL;
+  }
+  std::string text() const {
+    char text[24];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash_));
+    return text;
+  }
+
+ private:
+  std::uint64_t hash_ = 14695981039346656037ULL;
+};
+
+/// A model that has changed is another model.
 std::string digest_of(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
-  std::uint64_t hash = 14695981039346656037ULL;
+  Digest digest;
   std::vector<char> buffer(1 << 16);
-  while (in.read(buffer.data(), static_cast<std::streamsize>(buffer.size())) || in.gcount() > 0) {
-    for (std::streamsize i = 0; i < in.gcount(); ++i)
-      hash = (hash ^ static_cast<unsigned char>(buffer[static_cast<std::size_t>(i)])) * 1099511628211ULL;
-    if (in.eof()) break;
-  }
-  char text[24];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
+  do {
+    in.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+    digest.add(buffer.data(), static_cast<std::size_t>(in.gcount()));
+  } while (in);
+  return digest.text();
 }
 
 std::string numbers(const std::vector<double>& values) {
@@ -59,10 +73,17 @@ std::string RowKeys::of(const Study& study, const StudyRow& row) {
                     numbers(camera.eye) + ";" + numbers(camera.target) + ";" + numbers(camera.up) + "|" +
                     std::to_string(row.width) + "x" + std::to_string(row.height) + "|" + row.arguments() +
                     "|" + reference_name(study) + (study.draw ? "" : "|not drawn") +
-                    (study.pictures ? "|pictures " + std::to_string(row.index) : "");
+                    (study.pictures ? "|pictures" : "");
   // A study that times frames needs rows with times, however many.
   if (study.draw && study.frames > 0) key += "|timed";
   return key;
+}
+
+std::string RowKeys::picture_of(const Study& study, const StudyRow& row) {
+  const std::string key = of(study, row);
+  Digest digest;
+  digest.add(key.data(), key.size());
+  return "pictures/" + digest.text();
 }
 
 Json journal_line(const Study& study, const StudyRow& row, const std::string& key, const RowResult& result,

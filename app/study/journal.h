@@ -18,6 +18,9 @@ namespace dupin::app {
 class RowKeys {
  public:
   std::string of(const Study& study, const StudyRow& row);
+  /// What its pictures are called in the study's folder, without their endings: the same wherever the row
+  /// stands.
+  std::string picture_of(const Study& study, const StudyRow& row);
 
  private:
   std::map<std::string, std::string> digests_;  ///< by path

@@ -10,6 +10,7 @@
 #include "../load.h"
 #include "../render_primitive.h"
 #include "../stopwatch.h"
+#include "journal.h"
 #include "truth.h"
 
 namespace dupin::app {
@@ -111,12 +112,6 @@ DrawOptions draw_options(const RenderOptions& options) {
   draw.samples = options.sample_count();
   for (const Vec3& position : options.light_positions()) draw.lights.push_back({position});
   return draw;
-}
-
-std::string picture_name(std::size_t row, const char* ending) {
-  char text[48];
-  std::snprintf(text, sizeof text, "pictures/%06zu%s", row, ending);
-  return text;
 }
 
 }  // namespace
@@ -324,7 +319,7 @@ class Measurer::Impl {
     if (!picture.ok()) return picture.status();
     Reference reference{std::move(*picture), ""};
     if (study_.pictures) {
-      reference.file = picture_name(row.index, ".reference.png");
+      reference.file = keys_.picture_of(study_, row) + ".reference.png";
       if (const Status status = write(reference.file, to_image8(reference.picture)); !status.ok())
         return status;
     }
@@ -347,16 +342,16 @@ class Measurer::Impl {
     fs::create_directories(path.parent_path(), error);
     return write_png(path.string(), picture);
   }
-  Status keep_picture(Case& c, const Image& picture) const {
-    const std::string name = picture_name(c.row->index, ".png");
+  Status keep_picture(Case& c, const Image& picture) {
+    const std::string name = keys_.picture_of(study_, *c.row) + ".png";
     c.result.pictures["picture"] = name;
     return write(name, to_image8(picture));
   }
-  Status keep_pictures(Case& c, const Reference& reference, const Image& picture) const {
+  Status keep_pictures(Case& c, const Reference& reference, const Image& picture) {
     if (const Status status = keep_picture(c, picture); !status.ok()) return status;
     const Result<Image8> difference = difference_picture(reference.picture, picture, {});
     if (!difference.ok()) return difference.status();
-    const std::string name = picture_name(c.row->index, ".difference.png");
+    const std::string name = keys_.picture_of(study_, *c.row) + ".difference.png";
     c.result.pictures["difference"] = name;
     c.result.pictures["reference"] = reference.file;
     return write(name, *difference);
@@ -376,6 +371,7 @@ class Measurer::Impl {
   const Study& study_;
   Session session_;
   std::string folder_;
+  RowKeys keys_;
   std::map<double, Meshed> models_;  ///< by deflection; std::map, so that they stay where they are
   std::unique_ptr<Truth> truth_;
   Camera camera_;
