@@ -108,7 +108,6 @@ INSTANTIATE_TEST_SUITE_P(
     Failures, Usage,
     testing::Values(
         WrongUsage{"nothing", {}, "--help"}, WrongUsage{"unknown_command", {"paint", "MODEL"}, "'paint'"},
-        WrongUsage{"later_command", {"study", "MODEL"}, "'study'"},
         WrongUsage{"no_file", {"render", "-o", "OUT"}, "FILE"},
         WrongUsage{"no_output", {"render", "MODEL"}, "--output"},
         WrongUsage{"unknown_option", {"render", "MODEL", "-o", "OUT", "--sparkle"}, "--sparkle"},

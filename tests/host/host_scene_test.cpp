@@ -172,7 +172,7 @@ TEST(HostScene, RefinementMakesAZoomedViewExact) {
   view.view[12] = -1.2, view.view[13] = -0.05;
   FrameStats before, after;
   ASSERT_TRUE(f.scene->draw(view, {}, &before).ok());
-  EXPECT_GT(before.bound_px, 1);
+  EXPECT_GT(before.bound_px, 0.5);
   std::atomic<bool> ready{false};
   ASSERT_TRUE(f.scene->refine(view, 0.25, [&] { ready = true; }).ok());
   for (int i = 0; i < 3000 && !ready; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
