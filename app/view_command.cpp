@@ -29,7 +29,9 @@ std::string viewer() {
 
 int run(const ViewCommandOptions& options) {
   const std::string program = viewer();
-  if (program.empty()) return fail({StatusCode::unreadable, "the viewer (dupin-view) is not installed; it is built where Qt 5 is"});
+  if (program.empty())
+    return fail(
+        {StatusCode::unreadable, "the viewer (dupin-view) is not installed; it is built where Qt 5 is"});
   if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY") && !std::getenv("QT_QPA_PLATFORM"))
     return fail({StatusCode::no_device, "there is no display for a window"});
   std::vector<std::string> words{program, "--units", options.units};
@@ -48,7 +50,8 @@ int run(const ViewCommandOptions& options) {
 void add_view_command(CLI::App& app, Command& chosen) {
   const auto options = std::make_shared<ViewCommandOptions>();
   CLI::App* command = app.add_subcommand("view", "Look at models in a window");
-  command->add_option("FILE", options->files, "STEP, IGES, BREP, FCStd, OBJ, PLY, STL or OFF; all in one scene");
+  command->add_option("FILE", options->files,
+                      "STEP, IGES, BREP, FCStd, OBJ, PLY, STL or OFF; all in one scene");
   command->add_option("--units", options->units, "The unit of files that name none")
       ->check(CLI::IsMember({"um", "mm", "cm", "m", "inch", "ft"}))
       ->capture_default_str();

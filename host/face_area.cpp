@@ -7,7 +7,8 @@ namespace {
 
 constexpr int kPieces = 8;
 /// Gauss and Legendre's nodes and weights on [-1, 1], of order 5.
-constexpr double kNodes[] = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831, 0.9061798459386640};
+constexpr double kNodes[] = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831,
+                             0.9061798459386640};
 constexpr double kWeights[] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
                                0.2369268850561891};
 

@@ -63,8 +63,10 @@ std::vector<float> distances(const std::vector<std::uint8_t>& marked, int width,
   std::vector<float> squares(marked.size());
   for (std::size_t i = 0; i < marked.size(); ++i) squares[i] = marked[i] ? 0 : kFar;
   const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
-  parallel_for(w, [&](std::size_t x) { transform_line(squares.data() + x, h, w); }, 32);
-  parallel_for(h, [&](std::size_t y) { transform_line(squares.data() + y * w, w, 1); }, 32);
+  parallel_for(
+      w, [&](std::size_t x) { transform_line(squares.data() + x, h, w); }, 32);
+  parallel_for(
+      h, [&](std::size_t y) { transform_line(squares.data() + y * w, w, 1); }, 32);
   for (float& square : squares) square = std::sqrt(square);
   return squares;
 }

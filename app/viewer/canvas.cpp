@@ -115,7 +115,8 @@ void Canvas::refine() {
   if (!scene_ || stats_.bound_px <= tolerance_px) return;
   makeCurrent();
   const Status status = scene_->refine(camera.view(), tolerance_px, [this] {
-    QMetaObject::invokeMethod(this, [this] { update(); }, Qt::QueuedConnection);
+    QMetaObject::invokeMethod(
+        this, [this] { update(); }, Qt::QueuedConnection);
   });
   doneCurrent();
   if (!status.ok() && failed) failed(status.message);
@@ -137,7 +138,8 @@ void Canvas::mouseMoveEvent(QMouseEvent* event) {
   if (event->buttons() & Qt::MiddleButton || event->modifiers() & Qt::ShiftModifier)
     camera.pan(step.x(), step.y());
   else if (event->buttons() & Qt::RightButton)
-    camera.zoom(std::exp(-0.01 * step.y()), 0.5 * in_pixels({width(), 0}).x(), 0.5 * in_pixels({0, height()}).y());
+    camera.zoom(std::exp(-0.01 * step.y()), 0.5 * in_pixels({width(), 0}).x(),
+                0.5 * in_pixels({0, height()}).y());
   else
     camera.orbit(step.x(), step.y());
   changed();

@@ -16,7 +16,8 @@ QColor diverging(double t) {
   const double u = std::abs(t);
   double out[3];
   for (std::size_t k = 0; k < 3; ++k) {
-    const double linear = u < 0.5 ? white[k] + (mid[k] - white[k]) * 2 * u : mid[k] + (end[k] - mid[k]) * (2 * u - 1);
+    const double linear =
+        u < 0.5 ? white[k] + (mid[k] - white[k]) * 2 * u : mid[k] + (end[k] - mid[k]) * (2 * u - 1);
     out[k] = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
   }
   return QColor::fromRgbF(out[0], out[1], out[2]);
@@ -50,7 +51,8 @@ void Legend::paintEvent(QPaintEvent*) {
   for (const double t : {1.0, 0.5, 0.0, -0.5, -1.0}) {
     const int y = top + static_cast<int>((1 - t) / 2 * (bottom - top));
     painter.drawLine(30, y, 34, y);
-    painter.drawText(QRect(38, y - 9, width() - 40, 18), Qt::AlignVCenter, QString::number(t * scale_, 'g', 3));
+    painter.drawText(QRect(38, y - 9, width() - 40, 18), Qt::AlignVCenter,
+                     QString::number(t * scale_, 'g', 3));
   }
 }
 

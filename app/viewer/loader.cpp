@@ -37,7 +37,8 @@ std::vector<Model> pieces_of(Model model) {
     instance.part = number_in_piece[part];
     pieces[piece_of[part]].instances.push_back(std::move(instance));
   }
-  for (Model& piece : pieces) piece.source = model.source, piece.format = model.format, piece.unit_note = model.unit_note;
+  for (Model& piece : pieces)
+    piece.source = model.source, piece.format = model.format, piece.unit_note = model.unit_note;
   pieces[0].skipped = std::move(model.skipped);
   pieces[0].notes = std::move(model.notes);
   return pieces;

@@ -13,7 +13,8 @@ namespace dupin::app {
 
 struct LoaderCallbacks {  ///< called on the loader's thread
   std::function<void(std::string stage, double fraction)> progress;
-  std::function<void(std::shared_ptr<const PreparedModel>)> ready;  ///< some of the parts, with their placements
+  std::function<void(std::shared_ptr<const PreparedModel>)>
+      ready;  ///< some of the parts, with their placements
   std::function<void(Status)> done;
 };
 
@@ -41,8 +42,8 @@ class Loader {
   std::thread thread_;
 };
 
-/// A model in pieces of whole parts with their placements, in the model's order: a small one first, so that something is seen soon,
-/// each of the others about twice as many faces as the one before.
+/// A model in pieces of whole parts with their placements, in the model's order: a small one first, so that
+/// something is seen soon, each of the others about twice as many faces as the one before.
 std::vector<Model> pieces_of(Model model);
 
 }  // namespace dupin::app

@@ -95,18 +95,33 @@ HostView OrbitCamera::view() const {
   const Vec3 eye = center_ + back_ * distance_;
   const double radius = box_.empty() ? 1 : box_.diagonal() / 2 + distance(center_, box_.center());
   HostView view;
-  view.view = {right_.x, up_.x, back_.x, 0, right_.y, up_.y, back_.y, 0, right_.z, up_.z, back_.z, 0,
-               -dot(right_, eye), -dot(up_, eye), -dot(back_, eye), 1};
+  view.view = {right_.x, up_.x, back_.x, 0, right_.y,          up_.y,          back_.y,          0,
+               right_.z, up_.z, back_.z, 0, -dot(right_, eye), -dot(up_, eye), -dot(back_, eye), 1};
   view.viewport = {0, 0, width_, height_};
   const double aspect = static_cast<double>(width_) / height_, far = distance_ + radius;
   if (parallel_) {
     const double half = distance_ * tangent(), near = distance_ - radius;
-    view.projection = {1 / (half * aspect), 0, 0, 0, 0, 1 / half, 0, 0, 0, 0, -2 / (far - near), 0, 0, 0,
-                       -(far + near) / (far - near), 1};
+    view.projection = {
+        1 / (half * aspect),          0, 0, 0, 0, 1 / half, 0, 0, 0, 0, -2 / (far - near), 0, 0, 0,
+        -(far + near) / (far - near), 1};
   } else {
     const double f = 1 / tangent(), near = std::max(distance_ - radius, 1e-4 * far);
-    view.projection = {f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0,
-                       2 * far * near / (near - far), 0};
+    view.projection = {f / aspect,
+                       0,
+                       0,
+                       0,
+                       0,
+                       f,
+                       0,
+                       0,
+                       0,
+                       0,
+                       (far + near) / (near - far),
+                       -1,
+                       0,
+                       0,
+                       2 * far * near / (near - far),
+                       0};
   }
   return view;
 }

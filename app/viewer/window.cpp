@@ -27,7 +27,8 @@ QTreeWidgetItem* instance_item(const PreparedModel& prepared, std::size_t i, Obj
   const Instance& instance = prepared.model->instances[i];
   const Part& part = prepared.model->parts[instance.part];
   const std::string& name = !instance.name.empty() ? instance.name : part.name;
-  auto* item = new QTreeWidgetItem({name.empty() ? QString("part %1").arg(i + 1) : QString::fromStdString(name)});
+  auto* item =
+      new QTreeWidgetItem({name.empty() ? QString("part %1").arg(i + 1) : QString::fromStdString(name)});
   item->setFlags(item->flags() | Qt::ItemIsUserCheckable);
   item->setCheckState(0, Qt::Checked);
   item->setData(0, Qt::UserRole, object);
@@ -89,7 +90,8 @@ void Window::paintEvent(QPaintEvent* event) {
 void Window::open(const QStringList& files) {
   for (const QString& path : files) {
     const std::string absolute = QFileInfo(path).absoluteFilePath().toStdString();
-    const auto same = std::find_if(files_.begin(), files_.end(), [&](const auto& f) { return f->path == absolute; });
+    const auto same =
+        std::find_if(files_.begin(), files_.end(), [&](const auto& f) { return f->path == absolute; });
     int index = static_cast<int>(same - files_.begin());
     if (same == files_.end()) {
       files_.push_back(std::make_unique<File>());
@@ -221,7 +223,8 @@ QByteArray Window::report_json() const {
   int objects = 0, hidden = 0;
   for (const auto& file : files_) {
     objects += static_cast<int>(file->objects.size());
-    for (int i = 0; i < file->item->childCount(); ++i) hidden += file->item->child(i)->checkState(0) == Qt::Unchecked;
+    for (int i = 0; i < file->item->childCount(); ++i)
+      hidden += file->item->child(i)->checkState(0) == Qt::Unchecked;
   }
   json["files"] = static_cast<int>(files_.size());
   json["objects"] = objects;

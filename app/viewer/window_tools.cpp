@@ -25,11 +25,14 @@ struct ShadingChoice {
   Shading shading;
   const char* legend;  ///< null: none
 };
-constexpr ShadingChoice kShadings[] = {
-    {"Lit", Shading::lit, nullptr},        {"Zebra", Shading::zebra, nullptr},
-    {"k1", Shading::k1, "k1, 1/unit"},     {"k2", Shading::k2, "k2, 1/unit"},
-    {"Mean curvature", Shading::mean, "mean, 1/unit"}, {"Normals", Shading::normal, nullptr},
-    {"Faces", Shading::face, nullptr},     {"Primitives", Shading::primitive, nullptr}};
+constexpr ShadingChoice kShadings[] = {{"Lit", Shading::lit, nullptr},
+                                       {"Zebra", Shading::zebra, nullptr},
+                                       {"k1", Shading::k1, "k1, 1/unit"},
+                                       {"k2", Shading::k2, "k2, 1/unit"},
+                                       {"Mean curvature", Shading::mean, "mean, 1/unit"},
+                                       {"Normals", Shading::normal, nullptr},
+                                       {"Faces", Shading::face, nullptr},
+                                       {"Primitives", Shading::primitive, nullptr}};
 constexpr double kTriangleDeflection = 1e-3;
 /// The color map's ends, in 1 / diagonal.
 constexpr double kCurvatureScale = 20;
@@ -53,7 +56,9 @@ void Window::make_tools() {
   QToolBar* tools = addToolBar("Tools");
   tools->setMovable(false);
   tools->addAction(action("Open", QKeySequence::Open, [this] {
-    open(QFileDialog::getOpenFileNames(this, "Open", {}, "Models (*.step *.stp *.iges *.igs *.brep *.brp *.FCStd *.obj *.ply *.stl *.off *.gz);;All files (*)"));
+    open(QFileDialog::getOpenFileNames(this, "Open", {},
+                                       "Models (*.step *.stp *.iges *.igs *.brep *.brp *.FCStd *.obj *.ply "
+                                       "*.stl *.off *.gz);;All files (*)"));
   }));
   tools->addAction(action("Save picture", QKeySequence::Save, [this] { save_picture(); }));
   action("Reload", QKeySequence("R"), [this] { reload_all(); });
@@ -76,13 +81,15 @@ void Window::make_view_tools(QToolBar& tools) {
   // FreeCAD's keys.
   struct {
     const char *text, *name, *key;
-  } const sides[] = {{"Isometric", "iso", "0"}, {"Front", "front", "1"},   {"Top", "top", "2"},      {"Right", "right", "3"},
-                     {"Back", "back", "4"},     {"Bottom", "bottom", "5"}, {"Left", "left", "6"}};
+  } const sides[] = {{"Isometric", "iso", "0"}, {"Front", "front", "1"}, {"Top", "top", "2"},
+                     {"Right", "right", "3"},   {"Back", "back", "4"},   {"Bottom", "bottom", "5"},
+                     {"Left", "left", "6"}};
   auto* button = new QToolButton(&tools);
   button->setText("View");
   button->setPopupMode(QToolButton::InstantPopup);
   for (const auto& side : sides)
-    button->addAction(action(side.text, QKeySequence(side.key), [this, name = side.name] { look_from(name); }));
+    button->addAction(
+        action(side.text, QKeySequence(side.key), [this, name = side.name] { look_from(name); }));
   tools.addWidget(button);
   tools.addAction(action("Fit", QKeySequence("F"), [this] {
     canvas_->refit_box();
@@ -124,9 +131,12 @@ void Window::make_shading_tools(QToolBar& tools) {
   tools.addAction(edges);
   shading_ = new QComboBox(&tools);
   for (const ShadingChoice& choice : kShadings) shading_->addItem(choice.name);
-  connect(shading_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this](int i) { shade(kShadings[i].shading); });
+  connect(shading_, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
+          [this](int i) { shade(kShadings[i].shading); });
   tools.addWidget(shading_);
-  const auto toggle = [this](int index) { shading_->setCurrentIndex(shading_->currentIndex() == index ? 0 : index); };
+  const auto toggle = [this](int index) {
+    shading_->setCurrentIndex(shading_->currentIndex() == index ? 0 : index);
+  };
   action("Zebra", QKeySequence("Z"), [toggle] { toggle(1); });
   action("Curvature", QKeySequence("C"), [toggle] { toggle(4); });
   primitive_ = new QComboBox(&tools);
@@ -157,7 +167,8 @@ void Window::make_section_tools(QToolBar& tools) {
   connect(section_at_, &QSlider::valueChanged, this, [this] { apply_section(); });
   tools.addWidget(section_);
   tools.addWidget(section_at_);
-  action("Section", QKeySequence("S"), [this] { section_->setCurrentIndex((section_->currentIndex() + 1) % 4); });
+  action("Section", QKeySequence("S"),
+         [this] { section_->setCurrentIndex((section_->currentIndex() + 1) % 4); });
 }
 
 void Window::apply_section() {
@@ -219,8 +230,12 @@ void Window::make_panels() {
   canvas_->picked = [this](const std::optional<Hit>& hit) { show_hit(hit); };
   canvas_->failed = [this](const std::string& why) { say(why, true); };
   canvas_->drawn = [this](const FrameStats& stats) {
-    const QString bound = stats.bound_px > 0 ? QString("certified within %1 px, ").arg(stats.bound_px, 0, 'g', 2) : QString();
-    frame_->setText(QString("%1%2 primitives, %3 ms").arg(bound).arg(stats.primitives).arg(stats.milliseconds, 0, 'f', 1));
+    const QString bound =
+        stats.bound_px > 0 ? QString("certified within %1 px, ").arg(stats.bound_px, 0, 'g', 2) : QString();
+    frame_->setText(QString("%1%2 primitives, %3 ms")
+                        .arg(bound)
+                        .arg(stats.primitives)
+                        .arg(stats.milliseconds, 0, 'f', 1));
   };
 }
 
@@ -252,7 +267,8 @@ void Window::show_hit(const std::optional<Hit>& hit) {
     line("area", number(area_));
   }
   line("at", QString("%1, %2, %3").arg(number(hit->point.x), number(hit->point.y), number(hit->point.z)));
-  if (hit->edge) line("edge", QString("%1, %2 px away").arg(*hit->edge + 1).arg(hit->edge_distance_px, 0, 'f', 1));
+  if (hit->edge)
+    line("edge", QString("%1, %2 px away").arg(*hit->edge + 1).arg(hit->edge_distance_px, 0, 'f', 1));
   readout_->setText(text);
 }
 

@@ -11,9 +11,9 @@
 #include "../../host/complete_model.h"
 #include "../../host/host_scene.h"
 #include "../../host/load_job.h"
+#include "../../host/memory_file.h"
 #include "../../sampling/point_sampler.h"
 #include "current_context.h"
-#include "../../host/memory_file.h"
 #include "pictures.h"
 #include "points.h"
 
@@ -161,14 +161,17 @@ std::shared_ptr<PreparedModel> prepare_model(const ModelPointer& model, double t
 
 // ---- scenes
 
-HostView view_of_host(const py::object& view, const py::object& projection, const std::array<int, 4>& viewport) {
+HostView view_of_host(const py::object& view, const py::object& projection,
+                      const std::array<int, 4>& viewport) {
   return {columns_of(view), columns_of(projection), viewport};
 }
 
 std::unique_ptr<HostScene> make_scene(const py::object& lookup) {
   GetProcAddress get = current_proc_address();
   if (!lookup.is_none())
-    get = [lookup](const char* name) { return reinterpret_cast<void*>(py::cast<std::uintptr_t>(lookup(name))); };
+    get = [lookup](const char* name) {
+      return reinterpret_cast<void*>(py::cast<std::uintptr_t>(lookup(name)));
+    };
   if (!get) raise({StatusCode::no_device, "no OpenGL context is current on this thread"});
   return value_of(HostScene::create(get));
 }
@@ -202,31 +205,36 @@ py::object pick(HostScene& scene, const py::object& view, const py::object& proj
 }
 
 void bind_models(py::module_& m) {
-  py::class_<Model, std::shared_ptr<Model>>(m, "Model", "What a CAD or mesh file holds: exact faces, never changed.")
-      .def_property_readonly("source", [](const Model& model) { return model.source; }, "The file's name.")
-      .def_property_readonly("format", [](const Model& model) { return model.format; }, "\"STEP\", …")
+  py::class_<Model, std::shared_ptr<Model>>(m, "Model",
+                                            "What a CAD or mesh file holds: exact faces, never changed.")
+      .def_property_readonly(
+          "source", [](const Model& model) { return model.source; }, "The file's name.")
+      .def_property_readonly(
+          "format", [](const Model& model) { return model.format; }, "\"STEP\", …")
       .def_property_readonly("unit", [](const Model& model) { return model.unit_note; })
-      .def_property_readonly("box", [](const Model& model) { return box_array(bounding_box(model)); },
-                             "Least and largest corner, 2 x 3; None for an empty model.")
+      .def_property_readonly(
+          "box", [](const Model& model) { return box_array(bounding_box(model)); },
+          "Least and largest corner, 2 x 3; None for an empty model.")
       .def_property_readonly("instances", &instance_names, "Name of each placement, and of its part.")
       .def("info", &info, "Counts, kinds of faces, box, what could not be read or was repaired.")
       .def("sample", &sample, py::kw_only(), py::arg("method") = "uniform", py::arg("grid") = 0,
-           py::arg("spacing") = 0.0, py::arg("epsilon") = 0.012, py::arg("delta") = 0.0, py::arg("border") = 0.0,
-           py::arg("tolerance") = 0.0, py::arg("progress") = py::none(),
+           py::arg("spacing") = 0.0, py::arg("epsilon") = 0.012, py::arg("delta") = 0.0,
+           py::arg("border") = 0.0, py::arg("tolerance") = 0.0, py::arg("progress") = py::none(),
            "Differential points of every face, as `dupin sample` makes them.")
       .def("prepare", &prepare_model, py::kw_only(), py::arg("tolerance") = 0.0,
            py::arg("normal_tolerance") = 0.25, py::arg("progress") = py::none(),
            "What a Scene draws: certified within `tolerance` model units and `normal_tolerance` degrees.")
-      .def("render",
-           [](const std::shared_ptr<Model>& model, const py::kwargs& k) { return render(model, k); },
-           "A picture as a dict of arrays, row 0 on top; see dupin.pyi for the keywords.");
+      .def(
+          "render", [](const std::shared_ptr<Model>& model, const py::kwargs& k) { return render(model, k); },
+          "A picture as a dict of arrays, row 0 on top; see dupin.pyi for the keywords.");
   py::class_<Points>(m, "Points", "Arrays of differential points; views of one memory, not copies.")
       .def("__len__", &Points::size)
       .def_property_readonly("positions", &Points::positions, "n x 3, model space")
       .def_property_readonly("normals", &Points::normals, "n x 3, unit, outward")
       .def_property_readonly("directions", &Points::directions, "n x 3, of the first curvature, unit")
-      .def_property_readonly("curvatures", &Points::curvatures,
-                             "n x 2, larger first by size; positive where the surface bends towards the normal")
+      .def_property_readonly(
+          "curvatures", &Points::curvatures,
+          "n x 2, larger first by size; positive where the surface bends towards the normal")
       .def_property_readonly("half_extents", &Points::half_extents, "n x 2, of the rectangles")
       .def_property_readonly("uv", &Points::uv, "n x 2, the surfaces' parameters")
       .def_property_readonly("bounds", &Points::bounds, "n")
@@ -235,7 +243,8 @@ void bind_models(py::module_& m) {
       .def_property_readonly("notes", &Points::notes)
       .def_property_readonly("skipped", &Points::skipped, "Name and reason of each face without a point.");
   py::class_<PreparedModel, std::shared_ptr<PreparedModel>>(m, "Prepared", "A model ready to be drawn.")
-      .def_property_readonly("model", [](const PreparedModel& p) { return std::const_pointer_cast<Model>(p.model); })
+      .def_property_readonly("model",
+                             [](const PreparedModel& p) { return std::const_pointer_cast<Model>(p.model); })
       .def_property_readonly("tolerance", [](const PreparedModel& p) { return p.tolerance; })
       .def_property_readonly("primitives", [](const PreparedModel& p) { return p.dps.count(); });
 }
@@ -254,44 +263,65 @@ void bind_jobs(py::module_& m) {
       .def_property_readonly("fraction", &LoadJob::fraction, "Of the stage, 0 … 1.")
       .def_property_readonly("stage", &LoadJob::stage)
       .def("cancel", &LoadJob::cancel)
-      .def("result", [](const LoadJob& job) {
-        auto made = [&] {
-          const py::gil_scoped_release release;
-          return job.result();
-        }();
-        return unconst(value_of(std::move(made)));
-      }, "Waits for it.");
+      .def(
+          "result",
+          [](const LoadJob& job) {
+            auto made = [&] {
+              const py::gil_scoped_release release;
+              return job.result();
+            }();
+            return unconst(value_of(std::move(made)));
+          },
+          "Waits for it.");
 }
 
 void bind_scenes(py::module_& m) {
   constexpr std::uint32_t kWhole = Scene::kWhole;
   py::class_<HostScene>(m, "Scene", "Models in the OpenGL context that is current where it is made and used.")
       .def(py::init(&make_scene), py::arg("get_proc_address") = py::none())
-      .def("add", [](HostScene& s, const std::shared_ptr<PreparedModel>& p, const py::object& matrix) {
-             return value_of(s.add(p, affine_of(matrix)));
-           }, py::arg("prepared"), py::arg("matrix") = py::none(), "The object's number.")
-      .def("replace", [](HostScene& s, ObjectId id, const std::shared_ptr<PreparedModel>& p) { check_status(s.replace(id, p)); })
+      .def(
+          "add",
+          [](HostScene& s, const std::shared_ptr<PreparedModel>& p, const py::object& matrix) {
+            return value_of(s.add(p, affine_of(matrix)));
+          },
+          py::arg("prepared"), py::arg("matrix") = py::none(), "The object's number.")
+      .def("replace", [](HostScene& s, ObjectId id,
+                         const std::shared_ptr<PreparedModel>& p) { check_status(s.replace(id, p)); })
       .def("remove", [](HostScene& s, ObjectId id) { check_status(s.remove(id)); })
-      .def("place", [](HostScene& s, ObjectId id, const py::object& matrix) { check_status(s.place(id, affine_of(matrix))); })
-      .def("set_visible", [](HostScene& s, ObjectId id, bool on, std::uint32_t instance, std::uint32_t face) {
-             check_status(s.set_visible({id, instance, face}, on));
-           }, py::arg("object"), py::arg("visible"), py::arg("instance") = kWhole, py::arg("face") = kWhole)
-      .def("set_color", [](HostScene& s, ObjectId id, const py::object& c, std::uint32_t instance, std::uint32_t face) {
-             check_status(s.set_color({id, instance, face}, color_of(c)));
-           }, py::arg("object"), py::arg("color"), py::arg("instance") = kWhole, py::arg("face") = kWhole)
-      .def("set_highlight", [](HostScene& s, ObjectId id, const py::object& c, std::uint32_t instance, std::uint32_t face) {
-             check_status(s.set_highlight({id, instance, face}, color_of(c)));
-           }, py::arg("object"), py::arg("color"), py::arg("instance") = kWhole, py::arg("face") = kWhole)
+      .def("place", [](HostScene& s, ObjectId id,
+                       const py::object& matrix) { check_status(s.place(id, affine_of(matrix))); })
+      .def(
+          "set_visible",
+          [](HostScene& s, ObjectId id, bool on, std::uint32_t instance, std::uint32_t face) {
+            check_status(s.set_visible({id, instance, face}, on));
+          },
+          py::arg("object"), py::arg("visible"), py::arg("instance") = kWhole, py::arg("face") = kWhole)
+      .def(
+          "set_color",
+          [](HostScene& s, ObjectId id, const py::object& c, std::uint32_t instance, std::uint32_t face) {
+            check_status(s.set_color({id, instance, face}, color_of(c)));
+          },
+          py::arg("object"), py::arg("color"), py::arg("instance") = kWhole, py::arg("face") = kWhole)
+      .def(
+          "set_highlight",
+          [](HostScene& s, ObjectId id, const py::object& c, std::uint32_t instance, std::uint32_t face) {
+            check_status(s.set_highlight({id, instance, face}, color_of(c)));
+          },
+          py::arg("object"), py::arg("color"), py::arg("instance") = kWhole, py::arg("face") = kWhole)
       .def_property_readonly("box", [](const HostScene& s) { return box_array(s.box()); })
       .def_property_readonly("objects", &HostScene::objects)
       .def_property_readonly("gl_renderer", &HostScene::gl_renderer)
       .def("draw", &draw, py::arg("view"), py::arg("projection"), py::arg("viewport"),
            "Into the current framebuffer, against its depth buffer. Matrices as NumPy's, rows first.")
-      .def("pick", &pick, py::arg("view"), py::arg("projection"), py::arg("viewport"), py::arg("x"), py::arg("y"))
-      .def("refine", [](HostScene& s, const py::object& view, const py::object& projection,
-                        const std::array<int, 4>& viewport, double tolerance_px) {
-             check_status(s.refine(view_of_host(view, projection, viewport), tolerance_px));
-           }, py::arg("view"), py::arg("projection"), py::arg("viewport"), py::arg("tolerance_px") = 0.5)
+      .def("pick", &pick, py::arg("view"), py::arg("projection"), py::arg("viewport"), py::arg("x"),
+           py::arg("y"))
+      .def(
+          "refine",
+          [](HostScene& s, const py::object& view, const py::object& projection,
+             const std::array<int, 4>& viewport, double tolerance_px) {
+            check_status(s.refine(view_of_host(view, projection, viewport), tolerance_px));
+          },
+          py::arg("view"), py::arg("projection"), py::arg("viewport"), py::arg("tolerance_px") = 0.5)
       .def_property_readonly("refining", &HostScene::refining);
 }
 
@@ -334,23 +364,31 @@ PYBIND11_MODULE(dupin, m) {
   m.doc() = "CAD models from their exact surfaces, without tessellating them: arrays, pictures, OpenGL.";
   m.attr("__version__") = DUPIN_VERSION;
   error_class() = py::reinterpret_steal<py::object>(PyErr_NewExceptionWithDoc(
-      "dupin.Error", "Why something could not be done; `code` is the kind of reason.", PyExc_RuntimeError, nullptr));
+      "dupin.Error", "Why something could not be done; `code` is the kind of reason.", PyExc_RuntimeError,
+      nullptr));
   m.attr("Error") = error_class();
   bind_models(m);
   bind_jobs(m);
   bind_scenes(m);
-  m.def("load", [](const std::string& path, double time_limit, std::uint64_t memory_limit, const std::string& units,
-                   const py::object& progress) {
-          return std::const_pointer_cast<Model>(load(path, import_options(time_limit, memory_limit, units, progress)));
-        }, py::arg("path"), py::kw_only(), py::arg("time_limit") = 0.0, py::arg("memory_limit") = 0,
-        py::arg("units") = "mm", py::arg("progress") = py::none(),
-        "Reads STEP, IGES, BREP, FCStd, OBJ, PLY, STL or OFF, in a process of its own.");
-  m.def("load_bytes", [](const py::bytes& bytes, const std::string& units) {
-          const std::string_view view = bytes;
-          const MemoryFile file(view.data(), view.size());
-          if (!file.whole()) raise({StatusCode::limit, "no file in memory could be made of the bytes"});
-          return std::const_pointer_cast<Model>(load(file.path(), import_options(0, 0, units, py::none())));
-        }, py::arg("bytes"), py::kw_only(), py::arg("units") = "mm", "The same of a file's bytes.");
+  m.def(
+      "load",
+      [](const std::string& path, double time_limit, std::uint64_t memory_limit, const std::string& units,
+         const py::object& progress) {
+        return std::const_pointer_cast<Model>(
+            load(path, import_options(time_limit, memory_limit, units, progress)));
+      },
+      py::arg("path"), py::kw_only(), py::arg("time_limit") = 0.0, py::arg("memory_limit") = 0,
+      py::arg("units") = "mm", py::arg("progress") = py::none(),
+      "Reads STEP, IGES, BREP, FCStd, OBJ, PLY, STL or OFF, in a process of its own.");
+  m.def(
+      "load_bytes",
+      [](const py::bytes& bytes, const std::string& units) {
+        const std::string_view view = bytes;
+        const MemoryFile file(view.data(), view.size());
+        if (!file.whole()) raise({StatusCode::limit, "no file in memory could be made of the bytes"});
+        return std::const_pointer_cast<Model>(load(file.path(), import_options(0, 0, units, py::none())));
+      },
+      py::arg("bytes"), py::kw_only(), py::arg("units") = "mm", "The same of a file's bytes.");
   m.def("compare", &compare_pictures, py::arg("a"), py::arg("b"), py::arg("fov") = 30.0,
         "How much two pictures differ: arrays of bytes (sRGB) or floats (linear), or files.");
   m.def("set_threads", &set_thread_limit, py::arg("threads"), "Threads to use at once; 0: one a core.");

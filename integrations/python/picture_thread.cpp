@@ -15,7 +15,8 @@ class PictureThread {
     std::thread([this] { serve(); }).detach();
   }
   Status run(const std::function<Status(Renderer&)>& work) {
-    if (::getpid() != process_) return {StatusCode::limit, "pictures cannot be drawn after a fork; use spawn"};
+    if (::getpid() != process_)
+      return {StatusCode::limit, "pictures cannot be drawn after a fork; use spawn"};
     const std::lock_guard one_at_a_time(callers_);
     std::unique_lock lock(mutex_);
     work_ = &work;

@@ -14,8 +14,8 @@ namespace dupin::python {
 namespace {
 
 constexpr double kRadians = 3.14159265358979323846 / 180;
-constexpr const char* kOutputNames[] = {"color", "normal",    "depth", "position", "curvature", "direction",
-                                        "face",  "primitive", "uv",    "screen"};
+constexpr const char* kOutputNames[] = {"color",     "normal", "depth",     "position", "curvature",
+                                        "direction", "face",   "primitive", "uv",       "screen"};
 
 /// The keyword's value, or `otherwise`; it is gone from `keywords` then.
 template <class T>
@@ -73,7 +73,8 @@ Camera take_camera(py::dict& keywords, const Model& model) {
   return value_of(app::make_camera(view, model));
 }
 
-void put(py::dict& out, const Frame& frame, const char* name, std::vector<float> values, py::ssize_t channels) {
+void put(py::dict& out, const Frame& frame, const char* name, std::vector<float> values,
+         py::ssize_t channels) {
   if (values.empty()) return;
   std::vector<py::ssize_t> shape{frame.height, frame.width};
   if (channels > 1) shape.push_back(channels);

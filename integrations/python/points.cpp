@@ -6,7 +6,8 @@
 
 namespace dupin::python {
 
-static_assert(offsetof(DifferentialPoint, lambda_v) == offsetof(DifferentialPoint, lambda_u) + sizeof(double));
+static_assert(offsetof(DifferentialPoint, lambda_v) ==
+              offsetof(DifferentialPoint, lambda_u) + sizeof(double));
 static_assert(offsetof(DifferentialPoint, half_v) == offsetof(DifferentialPoint, half_u) + sizeof(double));
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Vec2) == 2 * sizeof(double));
 
@@ -38,8 +39,8 @@ Points::Points(const Model& model, PointScene scene) : notes_(std::move(scene.no
   for (std::size_t i = 0; i < model.instances.size(); ++i) {
     const List& own = scene.parts[model.instances[i].part].points;
     parallel_for(
-        own.size(), [&](std::size_t k) { (*points_)[first + k] = placed(own[k], model.instances[i].to_world); },
-        kGrain);
+        own.size(),
+        [&](std::size_t k) { (*points_)[first + k] = placed(own[k], model.instances[i].to_world); }, kGrain);
     first = ends_[i];
   }
 }

@@ -100,7 +100,8 @@ TEST(Loader, PiecesHoldEveryPartAndPlacementOnce) {
   std::size_t parts = 0, placed = 0, all_faces = 0;
   for (const Model& piece : pieces) {
     parts += piece.parts.size(), placed += piece.instances.size(), all_faces += face_instance_count(piece);
-    for (const Instance& instance : piece.instances) EXPECT_EQ(instance.name, piece.parts[instance.part].name);
+    for (const Instance& instance : piece.instances)
+      EXPECT_EQ(instance.name, piece.parts[instance.part].name);
   }
   EXPECT_EQ(parts, 40U);
   EXPECT_EQ(placed, instances);
