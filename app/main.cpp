@@ -21,10 +21,7 @@ std::string usage_error(const CLI::App& app, int argc, char** argv, const CLI::P
   if (first.empty()) return "no command; see dupin --help";
   const auto commands =
       app.get_subcommands([&](const CLI::App* command) { return command->get_name() == first; });
-  if (first[0] != '-' && commands.empty())
-    return "'" + first +
-           "' is no command of this version (info, render, sample, view, compare, study and bench are); see dupin "
-           "--help";
+  if (first[0] != '-' && commands.empty()) return "'" + first + "' is no command; see dupin --help";
   const bool named = first[0] != '-';
   return std::string(error.what()) + "; see dupin " + (named ? first + " " : "") + "--help";
 }

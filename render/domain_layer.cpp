@@ -38,6 +38,7 @@ class DomainLayer : public Layer {
  private:
   bool published() const { return content_.blend == DomainBlend::published; }
   void set_pixels(const LayerPass& pass, GLuint program) const;
+  Result<GLuint> use_program(const LayerPass& pass, std::string what, const ProgramText& text);
   Status paint(const LayerPass& pass);
   void bind_textures(const LayerPass& pass) const;
   std::vector<std::string> defines() const;
@@ -190,22 +191,27 @@ void DomainLayer::bind_textures(const LayerPass& pass) const {
   }
 }
 
+/// The program that `what` and its defines tell from others, in use, with all that it reads.
+Result<GLuint> DomainLayer::use_program(const LayerPass& pass, std::string what, const ProgramText& text) {
+  for (const std::string& d : text.defines) what += ' ' + d;
+  const auto name = layer_program(pass, what, text);
+  if (!name) return name;
+  bind_textures(pass);
+  set_pixels(pass, *name);
+  pass.renderer.gl->BindVertexArray(pass.renderer.empty_array().name());
+  return name;
+}
+
 /// Figure 10.
 Status DomainLayer::paint(const LayerPass& pass) {
-  const Gl& gl = *pass.renderer.gl;
   ProgramText text{{"proxy.glsl", "domain_plane.vert"},
                    {"placed.glsl", "domain.glsl", "domain_plane.frag"},
                    defines(),
                    {},
                    units()};
   text.units.emplace_back("order", kNeighborsUnit);
-  std::string key = "domain planes";
-  for (const std::string& d : text.defines) key += ' ' + d;
-  const auto name = layer_program(pass, key, text);
+  const auto name = use_program(pass, "domain planes", text);
   if (!name) return name.status();
-  bind_textures(pass);
-  set_pixels(pass, *name);
-  gl.BindVertexArray(pass.renderer.empty_array().name());
   return painter_.draw(pass, *name, kNeighborsUnit);
 }
 
@@ -227,13 +233,8 @@ Status DomainLayer::draw(const LayerPass& pass) {
                    defines(),
                    {},
                    units()};
-  std::string key = "domains";
-  for (const std::string& d : text.defines) key += ' ' + d;
-  const auto name = layer_program(pass, key, text);
+  const auto name = use_program(pass, "domains", text);
   if (!name) return name.status();
-  bind_textures(pass);
-  set_pixels(pass, *name);
-  gl.BindVertexArray(pass.renderer.empty_array().name());
   gl.Enable(GL_CULL_FACE);
   gl.CullFace(GL_BACK);  // the far sides of the boxes: they are there with the eye inside, too
   gl.DrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(36 * drawn_));

@@ -43,7 +43,7 @@ const std::vector<Knob>& knobs() {
       {"ellipse", {"method = \"uniform\"\ngrid = [4, 12, 36]"}},
       {"pop", {"deflection = [1e-3, 1e-4]\nsplat-size = [1, 3]"}},
       {"qsplat", {"deflection = [1e-3, 1e-4]\nsplat-size = [1, 3]"}},
-      {"amg", {""}},
+      {"amg", {"tolerance = [0.5, 2, 8]"}},
   };
   return list;
 }

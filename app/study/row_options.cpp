@@ -23,9 +23,9 @@ struct Applies {
 /// Options that `dupin render` takes with any primitive but that mean something for these alone.
 const std::vector<Applies>& restricted() {
   static const std::vector<Applies> table{
-      {"tolerance", {"auto", "quadric"}},
-      {"normal-tolerance", {"auto", "quadric"}},
-      {"deflection", {"triangles", "pop", "qsplat", "amg"}},
+      {"tolerance", {"auto", "quadric", "amg"}},
+      {"normal-tolerance", {"auto", "quadric", "amg"}},
+      {"deflection", {"triangles", "pop", "qsplat"}},
       {"splat-size", {"auto", "quadric", "pop", "qsplat"}},
       {"splatting", {"auto", "quadric", "pop", "qsplat"}},
       {"silhouette", {"auto", "quadric", "pop", "qsplat"}},
