@@ -164,8 +164,8 @@ int run(const SampleOptions& options) {
 
 void add_sample_command(CLI::App& app, Command& chosen) {
   const auto options = std::make_shared<SampleOptions>();
-  CLI::App* command = app.add_subcommand("sample", "Sample a CAD file's faces into differential points");
-  command->add_option("FILE", options->file, "STEP, IGES, BREP or FCStd")->required();
+  CLI::App* command = app.add_subcommand("sample", "Sample a file's faces into differential points");
+  command->add_option("FILE", options->file, "STEP, IGES, BREP, FCStd, OBJ, PLY, STL or OFF")->required();
   command->add_option("-o,--output", options->output, "The points: .ply, .csv or .dps")
       ->required()
       ->type_name("FILE");

@@ -36,9 +36,9 @@ struct DpsHeader {
   DpsEncoding encoding = DpsEncoding::packed;
   double epsilon = 0, delta = 0;  ///< 0 if every rectangle has a size of its own
 };
-/// sRGB
+/// sRGB; the diffuse one unless said otherwise is what scenes give faces without a colour.
 struct DpsColors {
-  std::array<std::uint8_t, 3> diffuse{141, 145, 151}, specular{89, 89, 89};
+  std::array<std::uint8_t, 3> diffuse{196, 199, 203}, specular{89, 89, 89};
   friend bool operator==(const DpsColors&, const DpsColors&) = default;
 };
 

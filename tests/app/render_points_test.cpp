@@ -90,6 +90,16 @@ TEST(RenderPoints, OfADpsFileAreThoseThatWereWritten) {
   }
 }
 
+TEST(RenderPoints, WithoutAColorAreTheSameInAFile) {
+  const Folder folder;
+  const std::string mesh = folder.write("plate.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n");
+  const std::vector<std::string> camera{"--eye", "0,-3,4", "--target", "0,0,0", "--primitive", "dp"};
+  ASSERT_EQ(run_dupin({"sample", mesh, "-o", folder.path("a.dps")}).exit_code, 0);
+  drawn(folder, mesh, "sampled.png", camera);
+  drawn(folder, folder.path("a.dps"), "read.png", camera);
+  EXPECT_LT(compared(folder.path("sampled.png"), folder.path("read.png"))["rmse"].get<double>(), 3);
+}
+
 TEST(RenderPoints, ADamagedDpsFileIsUnreadable) {
   const Folder folder;
   ASSERT_EQ(
