@@ -43,6 +43,7 @@ struct CellFit {
   double gradient_s = 0, gradient_t = 0;
   double overrun[4] = {0, 0, 0, 0};        ///< how far the footprint reaches over the cell's sides
   double margin_needed[4] = {0, 0, 0, 0};  ///< for whoever makes the footprint: what its sides would take
+  double overshoot = 0;  ///< likewise: how far it reaches over the grown cell, at a collapsed side
   /// The grown cell's poles along its border, in the DP's (x,y): sides v = 0, u = 1, v = 1, u = 0; the cell's
   /// own likewise. The grown border may be off by `border_slack`.
   BorderPoles border[4], grown_border[4];

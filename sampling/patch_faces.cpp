@@ -43,6 +43,9 @@ struct Cell {
   double excess = 0;  ///< of the cell that this is a piece of, where it was cut in one direction only
   bool cut_u = false;
 };
+/// ∂F/∂z where a footprint reaches over its grown cell; and by how many times the quadric's own bend the
+/// normals may turn there, the drawn one and the surface's.
+constexpr double kLeastSheetBeyond = 0.25, kBendsBeyond = 3;
 /// A cut that leaves more than this of what asked for it went in the wrong direction.
 constexpr double kNoProgress = 0.7;
 
@@ -214,7 +217,34 @@ class PatchFace {
   }
 
   bool emit(const Cell& cell, const Box2& uv, const CellRequest& request, CellFit& fit) {
-    return make_footprint(uv, fit) && add_strips(cell, uv, request, fit) && emit_fit(cell, uv, fit);
+    return make_footprint(uv, fit) && add_overshoot(request, fit) && add_strips(cell, uv, request, fit) &&
+           emit_fit(cell, uv, fit);
+  }
+
+  /// Beside a collapsed side, where the grown cell has no width, the footprint reaches over it. What is drawn
+  /// there is as far as that from a place where the certificate holds, and its normal has turned, and the
+  /// surface's, by no more than both curvatures make of it.
+  static bool add_overshoot(const CellRequest& request, CellFit& fit) {
+    if (!(fit.overshoot > 0)) return true;
+    QuadricDp& dp = fit.dp;
+    double x = 0, y = 0;
+    for (Vec2 p : dp.footprint) x = std::max(x, std::abs(p.x)), y = std::max(y, std::abs(p.y));
+    const double z = std::max(std::abs(dp.z_lo), std::abs(dp.z_hi)) + fit.overshoot;
+    const double gz = 1 - std::abs(dp.a) * x - std::abs(dp.b) * y - std::abs(dp.c) * z;
+    if (!(gz > kLeastSheetBeyond)) return false;
+    const double slope = std::hypot(std::abs(dp.lambda_u) * x + std::abs(dp.a) * z,
+                                    std::abs(dp.lambda_v) * y + std::abs(dp.b) * z) /
+                         gz;
+    const double r = std::hypot(x, y);
+    double cubic = 0;
+    for (double c : dp.cubic) cubic += 6 * std::abs(c) * r;
+    const double bend = (std::max(std::abs(dp.lambda_u), std::abs(dp.lambda_v)) + cubic +
+                         2 * std::hypot(dp.a, dp.b) * slope + std::abs(dp.c) * slope * slope) /
+                        gz;
+    const double off = fit.overshoot * std::hypot(1, slope);
+    fit.bound += off, fit.dp.z_lo -= off, fit.dp.z_hi += off;
+    fit.normal_bound += kBendsBeyond * bend * fit.overshoot;
+    return fit.bound <= request.tolerance && fit.normal_bound <= request.normal_tolerance;
   }
 
   bool emit_fit(const Cell& cell, const Box2& uv, const CellFit& fit) {
@@ -265,9 +295,9 @@ class PatchFace {
     // The fit's parameters run over [−1,1], margins included.
     const double half = (1 + 2 * kMergedMargin) / 2;
     const Remainder& d = merged->beyond;
-    CellFit fit =
-        fit_cell(cell.patch, {tolerance, in_.normal_tolerance, {}, {d.value, d.ds * half, d.dt * half}});
-    if (!fit.valid || !make_footprint(uv, fit)) return false;
+    const CellRequest request{tolerance, in_.normal_tolerance, {}, {d.value, d.ds * half, d.dt * half}};
+    CellFit fit = fit_cell(cell.patch, request);
+    if (!fit.valid || !make_footprint(uv, fit) || !add_overshoot(request, fit)) return false;
     const double gradient[2] = {fit.gradient_t, fit.gradient_s};
     for (int k = 0; k < 4; ++k)
       if (!on_border(k, uv) && !(fit.overrun[k] * gradient[k % 2] <= merged->margin[k])) return false;
@@ -396,10 +426,12 @@ class PatchFace {
                        fit.border[3].back()};
     const double size = std::max(length(c[2] - c[0]), length(c[3] - c[1]));
     SideLine lines[4];
-    bool reached = true;
+    bool reached = true, is_point[4];
+    for (int k = 0; k < 4; ++k) is_point[k] = length(c[(k + 1) % 4] - c[k]) <= 1e-9 * size;
+    fit.overshoot = 0;
     for (int k = 0; k < 4; ++k) {
       const Vec2 a = c[k], d = c[(k + 1) % 4] - a;
-      const bool point = length(d) <= 1e-9 * size;
+      const bool point = is_point[k];
       Vec2 out = point ? a - (c[(k + 2) % 4] + c[(k + 3) % 4]) * 0.5 : Vec2{d.y, -d.x};
       if (!(length(out) > 0)) return false;
       out = out / length(out);
@@ -421,8 +453,14 @@ class PatchFace {
         reach -= fit.border_slack;
         // A cell that is thinner than its bound cannot overlap by it: its neighbours do.
         const double needed = std::min(fit.bound + 1e-5 * size, kThinOverlap * (bulge - own));
-        if (!(reach - bulge >= needed)) reached = false;
-        overlap_width = std::min(wanted, reach - bulge);
+        if (is_point[(k + 1) % 4] || is_point[(k + 3) % 4]) {
+          overlap_width = std::max(needed, std::min(wanted, reach - bulge));
+          fit.overshoot = std::max(fit.overshoot, bulge + overlap_width - reach);
+          fit.margin_needed[k] = bulge > needed ? 1 : 0;
+        } else {
+          if (!(reach - bulge >= needed)) reached = false;
+          overlap_width = std::min(wanted, reach - bulge);
+        }
       }
       lines[k] = {a + out * (bulge + overlap_width), out};
       double depth = 0;
@@ -432,6 +470,10 @@ class PatchFace {
     if (!reached) return false;
     for (int k = 0; k < 4; ++k)
       if (!meet(lines[(k + 3) % 4], lines[k], fit.dp.footprint[k])) return false;
+    for (int k = 0; k < 4 && fit.overshoot > 0; ++k)
+      for (int end : {k, (k + 1) % 4})  // over a border trims end it
+        if (is_point[k] && !on_border(end == k ? (k + 3) % 4 : end, uv))
+          fit.overshoot = std::max(fit.overshoot, length(fit.dp.footprint[end] - c[k]));
     return is_convex(fit.dp.footprint, size);
   }
 
@@ -526,6 +568,17 @@ class PatchFace {
   int made_ = 0;
 };
 
+/// Trims that miss a knot by a rounding error leave spans without a width, of the box's this part at most.
+constexpr double kSliver = 5e-10;
+void drop_slivers(std::vector<FittedPatch>& patches, const Box2& box) {
+  const Vec2 least = box.size() * kSliver;
+  const auto is_wide = [&](const FittedPatch& p) {
+    return p.patch.domain.size().x > least.x && p.patch.domain.size().y > least.y;
+  };
+  if (std::any_of(patches.begin(), patches.end(), is_wide))
+    std::erase_if(patches, [&](const FittedPatch& p) { return !is_wide(p); });
+}
+
 /// The surface in Bézier form: exactly, or interpolated where it is not rational.
 std::vector<FittedPatch> patches_of(const PatchFaceInput& in, PatchFaceResult& result) {
   const Surface& surface = in.part.surfaces[in.face.surface];
@@ -536,6 +589,7 @@ std::vector<FittedPatch> patches_of(const PatchFaceInput& in, PatchFaceResult& r
   for (BezierPatch& patch : bezier_patches(surface, in.boundary.uv_box))
     patches.push_back(
         {std::move(patch), stand_in ? stand_in->deviation : 0, stand_in ? stand_in->normal_deviation : 0});
+  drop_slivers(patches, in.boundary.uv_box);
   if (!patches.empty()) return patches;
   result.rational = false;
   patches = fitted_patches(surface, in.boundary.uv_box, in.tolerance, in.normal_tolerance);
