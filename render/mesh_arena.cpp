@@ -28,6 +28,7 @@ bool MeshArena::must_make_room() const {
 
 void MeshArena::make_room() {
   vertices_.clear(), triangles_.clear();
+  ++generation_;
   uploaded_vertices_ = uploaded_triangles_ = 0;
   for (auto& tree : blocks_)
     for (Loaded& block : tree) block.there = false;

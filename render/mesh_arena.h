@@ -26,6 +26,8 @@ class MeshArena {
   bool must_make_room() const;
   /// Forgets all triangles: indices given out before no longer hold.
   void make_room();
+  /// From 1 on; another after each make_room().
+  std::uint64_t generation() const { return generation_; }
   /// Unpacks what is wanted and not there, on several threads, and uploads it. A block that is damaged has no
   /// triangles.
   void load();
@@ -61,6 +63,7 @@ class MeshArena {
   std::vector<Place> wanted_;
   std::vector<SplatVertex> vertices_;
   std::vector<SplatTriangle> triangles_;
+  std::uint64_t generation_ = 1;
   std::size_t uploaded_vertices_ = 0, uploaded_triangles_ = 0;
   TexelBuffer vertex_buffer_, triangle_buffer_;
 };

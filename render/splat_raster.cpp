@@ -7,15 +7,12 @@
 #include <limits>
 #include <mutex>
 
-#include "../core/parallel.h"
-
 namespace dupin {
 namespace {
 
 constexpr int kSubpixelBits = 8, kSubpixels = 1 << kSubpixelBits;
 /// Coordinates beyond this many pixels are cut off, so that products of differences fit 64 bits.
 constexpr double kGuardBand = 1 << 20;
-constexpr std::size_t kTask = 4096;
 
 struct Projected {
   double x = 0, y = 0;  ///< pixels
@@ -376,31 +373,34 @@ void SplatRaster::begin(int width, int height) {
   rows_ = {height, 0};
 }
 
-void SplatRaster::add_points(const SplatProjection& projection, std::span<const EncodedNode> nodes,
-                             std::uint32_t first, Splatting splatting) {
-  const std::size_t tasks = (nodes.size() + kTask - 1) / kTask;
-  parallel_for(tasks, [&](std::size_t task) {
-    Points points(*this, projection, splatting);
-    for (std::size_t i = task * kTask; i < std::min(nodes.size(), (task + 1) * kTask); ++i)
-      points.add(nodes[i], first + static_cast<std::uint32_t>(i));
-    const std::lock_guard guard(rows_lock_);
-    if (points.rows().first < points.rows().last)
-      rows_ = {std::min(rows_[0], points.rows().first), std::max(rows_[1], points.rows().last)};
-  });
+void SplatRaster::add_rows(int first, int last) {
+  if (first >= last) return;
+  const std::lock_guard guard(rows_lock_);
+  rows_ = {std::min(rows_[0], first), std::max(rows_[1], last)};
+}
+
+void SplatRaster::add_points(const SplatProjection& projection, std::span<const SplatList> lists,
+                             const NodeAt& node_at, Splatting splatting) {
+  Points points(*this, projection, splatting);
+  for (const SplatList& list : lists)
+    for (std::size_t i = 0; i < list.items.size(); ++i)
+      points.add(node_at(list.items[i]), list.first + static_cast<std::uint32_t>(i));
+  add_rows(points.rows().first, points.rows().last);
 }
 
 void SplatRaster::add_triangles(const SplatProjection& projection, std::span<const SplatVertex> vertices,
-                                std::span<const SplatTriangle> triangles, std::span<const std::uint32_t> list,
-                                std::uint32_t first) {
-  const std::size_t tasks = (list.size() + kTask - 1) / kTask;
-  parallel_for(tasks, [&](std::size_t task) {
-    Triangles filler(*this, projection, vertices);
-    for (std::size_t i = task * kTask; i < std::min(list.size(), (task + 1) * kTask); ++i)
-      filler.add(triangles[list[i]], kTriangle | (first + static_cast<std::uint32_t>(i)));
-    const std::lock_guard guard(rows_lock_);
-    if (filler.rows().first < filler.rows().last)
-      rows_ = {std::min(rows_[0], filler.rows().first), std::max(rows_[1], filler.rows().last)};
-  });
+                                std::span<const SplatTriangle> triangles, std::span<const SplatList> lists,
+                                const TrianglesOf& triangles_of) {
+  Triangles filler(*this, projection, vertices);
+  for (const SplatList& list : lists) {
+    std::uint32_t number = kTriangle | list.first;
+    for (const std::uint32_t leaf : list.items) {
+      const auto [first, last] = triangles_of(leaf);
+      for (std::uint32_t t = first; t < last; ++t) filler.add(triangles[t], number + (t - first));
+      number += 4;
+    }
+  }
+  add_rows(filler.rows().first, filler.rows().last);
 }
 
 }  // namespace dupin

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <span>
 #include <vector>
@@ -47,6 +48,12 @@ static_assert(sizeof(SplatVertex) == 16);
 /// Three indices into the vertices, and one word more.
 using SplatTriangle = std::array<std::uint32_t, 4>;
 
+/// Nodes or leaves, in the order of their numbers.
+struct SplatList {
+  std::span<const std::uint32_t> items;
+  std::uint32_t first = 0;  ///< the number of the first
+};
+
 class SplatRaster {
  public:
   static constexpr std::uint32_t kHole = 1U << 25, kTriangle = 1U << 26;
@@ -56,26 +63,35 @@ class SplatRaster {
 
   // Several threads may add at once.
 
-  /// Points with the numbers first, first + 1, …; below kHole.
-  void add_points(const SplatProjection& projection, std::span<const EncodedNode> nodes, std::uint32_t first,
+  /// The node of a number in a list.
+  using NodeAt = std::function<EncodedNode(std::uint32_t)>;
+  /// Points with the numbers list.first, list.first + 1, …; below kHole.
+  void add_points(const SplatProjection& projection, std::span<const SplatList> lists, const NodeAt& node_at,
                   Splatting splatting);
-  /// Those of `triangles` that `list` names, both sides of them, with the numbers kTriangle | first, ….
+  /// The triangles [first, last) of a leaf in a list, four at most.
+  using TrianglesOf = std::function<std::array<std::uint32_t, 2>(std::uint32_t)>;
+  /// Leaves' triangles, both sides of them, with the numbers kTriangle | list.first + 4 i + k.
   /// Pixels whose centres they cover, those on a common edge once.
   void add_triangles(const SplatProjection& projection, std::span<const SplatVertex> vertices,
-                     std::span<const SplatTriangle> triangles, std::span<const std::uint32_t> list,
-                     std::uint32_t first);
+                     std::span<const SplatTriangle> triangles, std::span<const SplatList> lists,
+                     const TrianglesOf& triangles_of);
 
   int width() const { return width_; }
   int height() const { return height_; }
   /// Row 0 on top: the number's complement in the low half, the depth buffer's value in the high one; 0 where
   /// there is nothing.
   const std::vector<std::uint64_t>& pixels() const { return pixels_; }
+  std::span<std::uint64_t> row(int y) {
+    return std::span(pixels_).subspan(static_cast<std::size_t>(y) * static_cast<std::size_t>(width_),
+                                      static_cast<std::size_t>(width_));
+  }
   /// Rows [first, last) hold everything.
   std::array<int, 2> rows() const { return rows_; }
 
  private:
   class Points;
   class Triangles;
+  void add_rows(int first, int last);
   int width_ = 0, height_ = 0;
   std::mutex rows_lock_;
   std::array<int, 2> rows_{0, 0};

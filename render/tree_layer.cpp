@@ -16,6 +16,8 @@ namespace {
 
 /// Placements are drawn in so many turns, each of which may hide those that follow.
 constexpr std::size_t kBatches = 16;
+/// Points or leaves that one task draws.
+constexpr std::size_t kTask = 4096;
 
 double milliseconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -85,7 +87,9 @@ class TreeLayers::Impl : public Layer {
     for (std::size_t i = 0; i < order.size(); i += step)
       if (Status status = add_trees(pass, order.subspan(i, std::min(step, order.size() - i))); !status.ok())
         return status;
-    if (lists_.finish(pass.scene)) upload_lists();
+    seen_.collect(raster_, lists_.point_count(), kMostLeafTriangles * lists_.leaf_count());
+    lists_.gather(pass.scene, seen_);
+    upload_lists();
     stats_.cut_ms = lists_.cut_ms;
     stats_.gather_ms = milliseconds_since(start) - stats_.cut_ms - stats_.raster_ms;
     stats_.points = lists_.point_count(), stats_.triangles = lists_.triangle_count();
@@ -185,8 +189,8 @@ class TreeLayers::Impl : public Layer {
   Status check_sizes(const LayerPass& pass) const {
     const auto texels = static_cast<std::size_t>(pass.renderer.max_texels);
     const MeshArena& arena = lists_.arena();
-    if (lists_.point_count() <= std::min<std::size_t>(SplatRaster::kHole, texels) &&
-        lists_.triangle_count() <= std::min<std::size_t>(SplatRaster::kTriangle, texels) &&
+    if (lists_.point_count() <= SplatRaster::kHole &&
+        kMostLeafTriangles * lists_.leaf_count() <= SplatRaster::kTriangle &&
         std::max(arena.vertices().size(), arena.triangles().size()) <= texels)
       return {};
     return {StatusCode::limit,
@@ -194,17 +198,12 @@ class TreeLayers::Impl : public Layer {
   }
 
   void upload_lists() {
-    points_buffer_.reserve(lists_.point_count() * sizeof(EncodedNode), GL_STREAM_DRAW);
-    extras_buffer_.reserve(lists_.point_count() * sizeof(PointExtra), GL_STREAM_DRAW);
-    drawn_buffer_.reserve(lists_.triangle_count() * sizeof(DrawnTriangle), GL_STREAM_DRAW);
-    const auto put = [](TexelBuffer& buffer, std::size_t at, const auto& list) {
-      if (!list.empty()) buffer.write(at * sizeof(list[0]), list.data(), list.size() * sizeof(list[0]));
+    const auto put = [](TexelBuffer& buffer, const auto& list) {
+      buffer.reserve(list.size() * sizeof(list[0]), GL_STREAM_DRAW);
+      if (!list.empty()) buffer.write(0, list.data(), list.size() * sizeof(list[0]));
     };
-    for (const std::size_t i : lists_.drawn()) {
-      const PlacedTree& p = lists_.placed()[i];
-      put(points_buffer_, p.first_point, p.points), put(extras_buffer_, p.first_point, p.extras);
-      put(drawn_buffer_, p.first_triangle, p.triangles);
-    }
+    put(points_buffer_, lists_.points()), put(extras_buffer_, lists_.extras());
+    put(drawn_buffer_, lists_.triangles());
     std::vector<TreeRun> runs = lists_.point_runs();
     runs.insert(runs.end(), lists_.triangle_runs().begin(), lists_.triangle_runs().end());
     runs_buffer_.assign(runs.data(), runs.size() * sizeof(TreeRun), GL_STREAM_DRAW);
@@ -236,17 +235,60 @@ class TreeLayers::Impl : public Layer {
       sections_.push_back(section_terms(section, pass.view));
   }
 
+  /// Some of a placement's lists.
+  struct RasterTask {
+    const PlacedTree* placed;
+    bool triangles;
+    std::vector<SplatList> lists;
+  };
+
+  /// Long lists in several tasks, short ones together in one.
+  static void add_tasks(const PlacedTree& p, bool triangles, std::vector<RasterTask>& tasks) {
+    const std::size_t first = triangles ? kMostLeafTriangles * p.first_leaf : p.first_point;
+    const std::uint32_t numbers = triangles ? kMostLeafTriangles : 1;
+    std::size_t room = 0;
+    for (const SplatList& list : triangles ? p.leaves : p.points)
+      for (std::size_t from = 0; from < list.items.size();) {
+        if (room == 0) tasks.push_back({&p, triangles, {}}), room = kTask;
+        const std::size_t count = std::min(room, list.items.size() - from);
+        tasks.back().lists.push_back({list.items.subspan(from, count),
+                                      static_cast<std::uint32_t>(first + list.first + numbers * from)});
+        from += count, room -= count;
+      }
+  }
+
   void rasterise(const LayerPass& pass, std::span<const std::size_t> batch) {
     const Splatting splatting = options_.reconstruct ? Splatting::visibility : Splatting::simple;
-    const MeshArena& arena = lists_.arena();
-    parallel_for(batch.size(), [&](std::size_t i) {
-      const PlacedTree& p = lists_.placed()[batch[i]];
-      if (p.points.empty() && p.triangles.empty()) return;
+    std::vector<RasterTask> tasks;
+    for (const std::size_t i : batch)
+      for (const bool triangles : {false, true}) add_tasks(lists_.placed()[i], triangles, tasks);
+    parallel_for(tasks.size(), [&](std::size_t i) {
+      const PlacedTree& p = *tasks[i].placed;
       const SplatProjection projection = this->projection(pass, p);
-      raster_.add_points(projection, p.points, static_cast<std::uint32_t>(p.first_point), splatting);
-      raster_.add_triangles(projection, arena.vertices(), arena.triangles(), p.triangle_indices,
-                            static_cast<std::uint32_t>(p.first_triangle));
+      if (tasks[i].triangles)
+        add_triangles(projection, p, tasks[i].lists);
+      else
+        add_points(projection, p, tasks[i].lists, splatting);
     });
+  }
+
+  void add_points(const SplatProjection& projection, const PlacedTree& p, std::span<const SplatList> lists,
+                  Splatting splatting) {
+    const PointTree& tree = p.cut.tree();
+    raster_.add_points(
+        projection, lists,
+        [&](std::uint32_t node) {
+          const auto encoded = tree.nodes(node, 1);
+          return encoded.empty() ? EncodedNode{} : encoded[0];
+        },
+        splatting);
+  }
+
+  void add_triangles(const SplatProjection& projection, const PlacedTree& p,
+                     std::span<const SplatList> lists) {
+    const MeshArena& arena = lists_.arena();
+    raster_.add_triangles(projection, arena.vertices(), arena.triangles(), lists,
+                          [&](std::uint32_t rank) { return arena.triangles_of(p.tree, rank); });
   }
 
   Status draw_picture(const LayerPass& pass) {
@@ -292,6 +334,7 @@ class TreeLayers::Impl : public Layer {
   const Scene::Impl* scene_ = nullptr;  ///< whose buffers these are
   TreeLists lists_;
   SplatRaster raster_;
+  SeenNumbers seen_;
   Occlusion occlusion_;
   std::vector<std::array<double, 4>> sections_;  ///< this pass's
   TexelBuffer points_buffer_, extras_buffer_, drawn_buffer_, runs_buffer_, grids_buffer_;

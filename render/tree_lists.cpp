@@ -16,21 +16,18 @@ std::vector<std::shared_ptr<const PointTree>> only_trees(const std::vector<PartT
   return result;
 }
 
-/// Leaves have no curvature of their own: they bend as their parents do.
-std::uint32_t curvature_of(const PointTree& tree, std::uint32_t node, const EncodedNode& encoded) {
-  if (!tree.shape().is_leaf(node) || node == 0) return tree.curvature(node);
+/// Without its face.
+PointExtra extra_of(const PointTree& tree, std::uint32_t node, const EncodedNode& encoded) {
+  constexpr std::uint32_t kWhole = 255U << 24, kCurvatureBits = 0xffffff, kNormalMask = 0x3fffff;
+  const std::uint32_t own_normal = encoded.words[3] & kNormalMask;
+  if (!tree.shape().is_leaf(node) || node == 0)
+    return {(tree.curvature(node) & kCurvatureBits) | kWhole, node, 0, own_normal};
   const std::uint64_t index = TreeShape::parent(node);
   const auto parent = tree.nodes(index, 1);
-  const std::uint32_t bits = tree.curvature(index);
-  if (bits == 0 || parent.empty()) return 0;
-  NodeCurvature k = decode_curvature(bits);
-  const Vec3 n = node_normal(parent[0]), x = any_perpendicular(n);
-  const Vec3 along = x * std::cos(k.angle) + cross(n, x) * std::sin(k.angle);
-  const Vec3 own = node_normal(encoded), own_x = any_perpendicular(own);
-  k.angle = std::atan2(dot(along, cross(own, own_x)), dot(along, own_x));
+  if (parent.empty()) return {kWhole, node, 0, own_normal};
   const double smaller = node_radius(encoded) / std::max(node_radius(parent[0]), 1e-300);
-  k.k1 *= smaller, k.k2 *= smaller;
-  return encode_curvature(k);
+  const auto size = static_cast<std::uint32_t>(std::lround(255 * std::clamp(smaller, 0.0, 1.0)));
+  return {(tree.curvature(index) & kCurvatureBits) | size << 24, node, 0, parent[0].words[3] & kNormalMask};
 }
 
 /// Clip X and Y times w, and the depth.
@@ -121,7 +118,6 @@ void TreeLists::begin(const LayerPass& pass, const TreeLayerOptions& options) {
   const SidePlanes sides = side_planes(pass.view, pass.options.sections);
   const CutOptions cut{options.threshold_px, options.silhouette, options.leaves_as_points};
   parallel_for(placed_.size(), [&](std::size_t i) {
-    placed_[i].drawn = false;
     if (pass.scene.instances[placed_[i].instance].visible) place_camera(pass, sides, cut, placed_[i]);
   });
   order_.clear();
@@ -130,20 +126,16 @@ void TreeLists::begin(const LayerPass& pass, const TreeLayerOptions& options) {
   std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
     return placed_[a].extent.nearest > placed_[b].extent.nearest;
   });
-  last_drawn_.swap(drawn_);
   drawn_.clear();
-  point_count_ = triangle_count_ = 0;
-  refilled_ = false;
+  point_count_ = leaf_count_ = triangle_count_ = 0;
   cut_ms = 0;
 }
 
 void TreeLists::update(const LayerPass& pass, std::span<const std::size_t> batch,
                        const TreeLayerOptions& options, const Occlusion* occlusion) {
   const auto start = std::chrono::steady_clock::now();
-  std::vector<Pieces> pieces(batch.size());
   parallel_for(batch.size(), [&](std::size_t i) {
     PlacedTree& p = placed_[batch[i]];
-    p.drawn = true;
     PointCut::Hidden hidden;
     if (occlusion)
       hidden = [&](const EncodedNode& node) {
@@ -152,56 +144,43 @@ void TreeLists::update(const LayerPass& pass, std::span<const std::size_t> batch
       };
     p.cut.update(p.view, options.coherent, hidden);
     const FaceColors& now = pass.scene.instances[p.instance].colors;
-    if (p.cut.changed() || p.look.whole != now.whole || p.look.faces != now.faces) p.filled = false;
+    if (p.found && !p.cut.changed() && p.look.whole == now.whole && p.look.faces == now.faces) return;
     p.look = now;
+    find_lists(pass.scene, p);
   });
   cut_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   drawn_.insert(drawn_.end(), batch.begin(), batch.end());
-  load_triangles(pass.scene, pieces, batch);
-  parallel_for(batch.size(), [&](std::size_t i) {
-    PlacedTree& p = placed_[batch[i]];
-    if (p.filled) return;
-    number(p, pieces[i]);
-    fill(pass.scene, p, pieces[i]);
-  });
+  load_triangles(batch);
   for (const std::size_t i : batch) {
     PlacedTree& p = placed_[i];
-    refilled_ = refilled_ || !p.filled;
-    p.filled = true;
-    p.first_point = point_count_, p.first_triangle = triangle_count_;
-    point_count_ += p.points.size(), triangle_count_ += p.triangles.size();
+    p.first_point = point_count_, p.first_leaf = leaf_count_;
+    point_count_ += p.point_count, leaf_count_ += p.leaf_count, triangle_count_ += p.triangle_count;
   }
 }
 
-/// Triangles that had to make room take the lists with them that refer to them.
-void TreeLists::load_triangles(const Scene::Impl& scene, std::vector<Pieces>& pieces,
-                               std::span<const std::size_t> batch) {
+/// Where others have to make room for them, these come back when they are seen.
+void TreeLists::load_triangles(std::span<const std::size_t> batch) {
   const auto want = [&] {
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      PlacedTree& p = placed_[batch[i]];
-      if (p.filled) continue;
-      if (pieces[i].points.empty() && pieces[i].leaves.empty()) find_pieces(scene, p, pieces[i]);
-      for (const Piece& piece : pieces[i].leaves) arena_.want(p.tree, *piece.list);
+    for (const std::size_t i : batch) {
+      const PlacedTree& p = placed_[i];
+      if (p.loaded == arena_.generation()) continue;
+      for (const SplatList& list : p.leaves) arena_.want(p.tree, list.items);
     }
   };
   want();
-  if (!arena_.must_make_room()) return arena_.load();
-  arena_.make_room();
-  for (PlacedTree& p : placed_) p.filled = false;
-  want();
+  if (arena_.must_make_room()) arena_.make_room(), want();
   arena_.load();
-  // What this frame has drawn already comes back, in the same order.
-  for (const std::size_t i : drawn_) {
-    PlacedTree& p = placed_[i];
-    if (std::find(batch.begin(), batch.end(), i) != batch.end()) continue;
-    Pieces again;
-    find_pieces(scene, p, again);
-    for (const Piece& piece : again.leaves) arena_.want(p.tree, *piece.list);
-    arena_.load();
-    number(p, again);
-    fill(scene, p, again);
-    p.filled = refilled_ = true;
-  }
+  parallel_for(batch.size(), [&](std::size_t i) {
+    PlacedTree& p = placed_[batch[i]];
+    if (p.loaded == arena_.generation()) return;
+    p.triangle_count = 0;
+    for (const SplatList& list : p.leaves)
+      for (const std::uint32_t rank : list.items) {
+        const auto [first, last] = arena_.triangles_of(p.tree, rank);
+        p.triangle_count += last - first;
+      }
+    p.loaded = arena_.generation();
+  });
 }
 
 std::uint32_t TreeLists::group_of_node(const PlacedTree& p, std::uint32_t node) const {
@@ -211,38 +190,34 @@ std::uint32_t TreeLists::group_of_leaf(const PlacedTree& p, std::uint32_t rank) 
   return p.cut.tree().groups().size() > 1 ? p.cut.tree().leaf_group(rank) : 0;
 }
 
-void TreeLists::find_pieces(const Scene::Impl& scene, const PlacedTree& p, Pieces& pieces) const {
+void TreeLists::find_lists(const Scene::Impl& scene, PlacedTree& p) const {
+  p.points.clear(), p.leaves.clear(), p.visible_points.clear(), p.visible_leaves.clear();
+  p.found = true, p.loaded = 0;
   const SceneInstance& instance = scene.instances[p.instance];
   const auto hidden = [&](std::uint32_t group) {
     return is_hidden(instance.colors.of(trees_[p.tree].first_face + group));
   };
   p.cut.each_list(
       [&](const Indices& nodes) {
-        if (!instance.hidden_faces) return pieces.points.push_back({&nodes, 0});
+        if (!instance.hidden_faces) return p.points.push_back({nodes, 0});
         for (const std::uint32_t node : nodes)
-          if (!hidden(group_of_node(p, node))) pieces.visible_points.push_back(node);
+          if (!hidden(group_of_node(p, node))) p.visible_points.push_back(node);
       },
       [&](const Indices& leaves) {
-        if (!instance.hidden_faces) return pieces.leaves.push_back({&leaves, 0});
+        if (!instance.hidden_faces) return p.leaves.push_back({leaves, 0});
         for (const std::uint32_t rank : leaves)
-          if (!hidden(group_of_leaf(p, rank))) pieces.visible_leaves.push_back(rank);
+          if (!hidden(group_of_leaf(p, rank))) p.visible_leaves.push_back(rank);
       });
-  if (!pieces.visible_points.empty()) pieces.points.push_back({&pieces.visible_points, 0});
-  if (!pieces.visible_leaves.empty()) pieces.leaves.push_back({&pieces.visible_leaves, 0});
-}
-
-void TreeLists::number(PlacedTree& p, Pieces& pieces) {
-  std::size_t points = 0, triangles = 0;
-  for (Piece& piece : pieces.points) piece.at = points, points += piece.list->size();
-  for (Piece& piece : pieces.leaves) {
-    piece.at = triangles;
-    for (const std::uint32_t rank : *piece.list) {
-      const auto [first, last] = arena_.triangles_of(p.tree, rank);
-      triangles += last - first;
+  if (!p.visible_points.empty()) p.points.push_back({p.visible_points, 0});
+  if (!p.visible_leaves.empty()) p.leaves.push_back({p.visible_leaves, 0});
+  const auto number = [](std::vector<SplatList>& lists, std::size_t& count, std::uint32_t numbers) {
+    count = 0;
+    for (SplatList& list : lists) {
+      list.first = numbers * static_cast<std::uint32_t>(count);
+      count += list.items.size();
     }
-  }
-  p.points.resize(points), p.extras.resize(points);
-  p.triangles.resize(triangles), p.triangle_indices.resize(triangles);
+  };
+  number(p.points, p.point_count, 1), number(p.leaves, p.leaf_count, kMostLeafTriangles);
 }
 
 /// Per group of the tree.
@@ -263,52 +238,86 @@ TreeLists::Indices TreeLists::faces_of(const Scene::Impl& scene, const PlacedTre
   return faces;
 }
 
-void TreeLists::fill_points(PlacedTree& p, const Piece& piece, const Indices& faces) {
+void TreeLists::gather(const Scene::Impl& scene, const SeenNumbers& seen) {
+  load_seen(seen.triangles);
+  points_.resize(seen.points.size()), extras_.resize(seen.points.size());
+  triangles_.resize(seen.triangles.size());
+  parallel_for(drawn_.size(), [&](std::size_t i) {
+    gather_points(scene, placed_[drawn_[i]], seen.points);
+    gather_triangles(scene, placed_[drawn_[i]], seen.triangles);
+  });
+  make_runs(scene, seen);
+}
+
+void TreeLists::gather_points(const Scene::Impl& scene, const PlacedTree& p, const NumberSet& seen) {
   const PointTree& tree = p.cut.tree();
-  std::size_t at = piece.at;
-  for (const std::uint32_t node : *piece.list) {
-    const auto encoded = tree.nodes(node, 1);
-    p.points[at] = encoded.empty() ? EncodedNode{} : encoded[0];
-    p.extras[at] = {curvature_of(tree, node, p.points[at]), node, faces[group_of_node(p, node)], 0};
-    ++at;
-  }
-}
-
-void TreeLists::fill_triangles(PlacedTree& p, const Piece& piece, const Indices& faces) {
-  std::size_t at = piece.at;
-  for (const std::uint32_t rank : *piece.list) {
-    const auto [first, last] = arena_.triangles_of(p.tree, rank);
-    const std::uint32_t face = faces[group_of_leaf(p, rank)];
-    for (std::uint32_t t = first; t < last; ++t) {
-      p.triangle_indices[at] = t;
-      p.triangles[at++] = {t, face};
-    }
-  }
-}
-
-void TreeLists::fill(const Scene::Impl& scene, PlacedTree& p, const Pieces& pieces) {
   const Indices faces = faces_of(scene, p);
-  parallel_for(pieces.points.size(), [&](std::size_t i) { fill_points(p, pieces.points[i], faces); });
-  parallel_for(pieces.leaves.size(), [&](std::size_t i) { fill_triangles(p, pieces.leaves[i], faces); });
+  parallel_for(p.points.size(), [&](std::size_t i) {
+    const SplatList& list = p.points[i];
+    const std::size_t first = p.first_point + list.first;
+    seen.each(first, first + list.items.size(), [&](std::size_t number, std::uint32_t at) {
+      const std::uint32_t node = list.items[number - first];
+      const auto encoded = tree.nodes(node, 1);
+      points_[at] = encoded.empty() ? EncodedNode{} : encoded[0];
+      extras_[at] = extra_of(tree, node, points_[at]);
+      extras_[at].face = faces[group_of_node(p, node)];
+    });
+  });
 }
 
-bool TreeLists::finish(const Scene::Impl& scene) {
-  if (!refilled_ && drawn_ == last_drawn_) return false;
-  make_runs(scene);
-  return true;
+void TreeLists::gather_triangles(const Scene::Impl& scene, const PlacedTree& p, const NumberSet& seen) {
+  const Indices faces = faces_of(scene, p);
+  parallel_for(p.leaves.size(), [&](std::size_t i) {
+    const SplatList& list = p.leaves[i];
+    const std::size_t first = kMostLeafTriangles * p.first_leaf + list.first;
+    seen.each(
+        first, first + kMostLeafTriangles * list.items.size(), [&](std::size_t number, std::uint32_t at) {
+          const std::size_t slot = number - first;
+          const std::uint32_t rank = list.items[slot / kMostLeafTriangles];
+          triangles_[at] = {
+              arena_.triangles_of(p.tree, rank)[0] + static_cast<std::uint32_t>(slot % kMostLeafTriangles),
+              faces[group_of_leaf(p, rank)]};
+        });
+  });
 }
 
-void TreeLists::make_runs(const Scene::Impl& scene) {
+/// Of those drawn early in a frame the triangles may have had to make room.
+void TreeLists::load_seen(const NumberSet& seen) {
+  const auto want = [&] {
+    for (const std::size_t i : drawn_) {
+      const PlacedTree& p = placed_[i];
+      if (p.loaded == arena_.generation()) continue;
+      for (const SplatList& list : p.leaves) {
+        const std::size_t first = kMostLeafTriangles * p.first_leaf + list.first;
+        seen.each(first, first + kMostLeafTriangles * list.items.size(),
+                  [&](std::size_t number, std::uint32_t) {
+                    arena_.want(p.tree, list.items.subspan((number - first) / kMostLeafTriangles, 1));
+                  });
+      }
+    }
+  };
+  want();
+  if (arena_.must_make_room()) {
+    arena_.make_room();
+    want();
+  }
+  arena_.load();
+}
+
+void TreeLists::make_runs(const Scene::Impl& scene, const SeenNumbers& seen) {
   point_runs_.clear(), triangle_runs_.clear();
   for (const std::size_t i : drawn_) {
     const PlacedTree& p = placed_[i];
     const SceneInstance& instance = scene.instances[p.instance];
     const std::uint32_t primitive =
         instance.first_primitive + scene.parts[instance.part].first_in_layer[layer_];
-    if (!p.points.empty())
-      point_runs_.push_back({static_cast<std::uint32_t>(p.first_point), p.instance, 0, primitive});
-    if (!p.triangles.empty())
-      triangle_runs_.push_back({static_cast<std::uint32_t>(p.first_triangle), p.instance, 0, primitive});
+    const auto add = [&](std::vector<TreeRun>& runs, const NumberSet& numbers, std::size_t first,
+                         std::size_t count) {
+      const std::uint32_t from = numbers.less_than(first), to = numbers.less_than(first + count);
+      if (from < to) runs.push_back({from, p.instance, 0, primitive});
+    };
+    add(point_runs_, seen.points, p.first_point, p.point_count);
+    add(triangle_runs_, seen.triangles, kMostLeafTriangles * p.first_leaf, kMostLeafTriangles * p.leaf_count);
   }
 }
 

@@ -1,4 +1,5 @@
-// What a frame draws of placed point trees: points and triangles, each with its number's place.
+// What a frame draws of placed point trees, and what shading needs of those points and triangles that are
+// seen.
 #ifndef DUPIN_RENDER_TREE_LISTS_H
 #define DUPIN_RENDER_TREE_LISTS_H
 
@@ -10,20 +11,24 @@
 #include "occlusion.h"
 #include "part_camera.h"
 #include "point_cut.h"
+#include "seen_numbers.h"
 #include "tree_layer.h"
 
 namespace dupin {
 
-/// The face is its number among the part's drawn ones; with kOverride its color is the host's, not the
-/// tree's.
+/// Of a point that is seen. A leaf bends as its parent does: `curvature` is the parent's, times `size` (the
+/// highest 8 bits: 255 for a node's own) as the leaf is smaller, and its axis counts from `normal`, the
+/// parent's. The face is its number among the part's drawn ones; with kOverride its color is the host's, not
+/// the tree's.
 struct PointExtra {
-  std::uint32_t curvature, node, face, unused;
+  std::uint32_t curvature, node, face, normal;
 };
 struct DrawnTriangle {
   std::uint32_t triangle, face;
 };
 
-/// One tree in one place, and what is drawn of it.
+/// One tree in one place, and what is drawn of it. Numbers are consecutive over a placement's points, and,
+/// four for each, over its leaves.
 struct PlacedTree {
   std::size_t tree = 0;  ///< the part
   std::uint32_t instance = 0;
@@ -31,16 +36,15 @@ struct PlacedTree {
   CutView view{};
   PartCamera camera{};
   PictureExtent extent{};
-  bool drawn = false;  ///< this frame: visible, and not hidden by others
 
-  std::vector<EncodedNode> points{};
-  std::vector<PointExtra> extras{};
-  std::vector<DrawnTriangle> triangles{};
-  std::vector<std::uint32_t> triangle_indices{};    ///< in the arena
-  std::size_t first_point = 0, first_triangle = 0;  ///< of the frame's
-
-  FaceColors look{};    ///< as the lists were filled
-  bool filled = false;  ///< they hold what the cut says
+  /// The cut's lists, numbered from 0; hidden faces left out.
+  std::vector<SplatList> points{}, leaves{};
+  std::vector<std::uint32_t> visible_points{}, visible_leaves{};  ///< where some faces are hidden
+  std::size_t point_count = 0, leaf_count = 0, triangle_count = 0;
+  FaceColors look{};                            ///< as the lists were found
+  bool found = false;                           ///< they hold what the cut says
+  std::uint64_t loaded = 0;                     ///< MeshArena::generation() that has their triangles; 0: none
+  std::size_t first_point = 0, first_leaf = 0;  ///< of the frame's
 };
 
 /// A placement's consecutive numbers, of points or of triangles: a texel of `runs`.
@@ -58,20 +62,26 @@ class TreeLists {
   void begin(const LayerPass& pass, const TreeLayerOptions& options);
   /// The frame's trees, indices into placed().
   const std::vector<std::size_t>& order() const { return order_; }
-  /// Finds the cuts of some of them, which are drawn next, and fills their lists where cuts or looks have
+  /// Finds the cuts of some of them, which are drawn next, and lists them anew where cuts or looks have
   /// changed.
   /// What `occlusion` hides of them is left out, if there is one.
   void update(const LayerPass& pass, std::span<const std::size_t> batch, const TreeLayerOptions& options,
               const Occlusion* occlusion);
-  /// When all are there: whether anything that is drawn, or its order, is another than in the last frame.
-  bool finish(const Scene::Impl& scene);
+  /// When all are drawn: what the shader needs of those that are seen, in the order of their new numbers.
+  void gather(const Scene::Impl& scene, const SeenNumbers& seen);
 
   const std::vector<PlacedTree>& placed() const { return placed_; }
   /// Those drawn so far, in their order.
   const std::vector<std::size_t>& drawn() const { return drawn_; }
   std::size_t point_count() const { return point_count_; }
+  std::size_t leaf_count() const { return leaf_count_; }
   std::size_t triangle_count() const { return triangle_count_; }
   const MeshArena& arena() const { return arena_; }
+
+  // Of what is seen.
+  const std::vector<EncodedNode>& points() const { return points_; }
+  const std::vector<PointExtra>& extras() const { return extras_; }
+  const std::vector<DrawnTriangle>& triangles() const { return triangles_; }
   const std::vector<TreeRun>& point_runs() const { return point_runs_; }
   const std::vector<TreeRun>& triangle_runs() const { return triangle_runs_; }
 
@@ -79,37 +89,27 @@ class TreeLists {
 
  private:
   using Indices = std::vector<std::uint32_t>;
-  /// A list of nodes or of leaves, and where its first point or triangle goes.
-  struct Piece {
-    const Indices* list;
-    std::size_t at;
-  };
-  /// What is drawn of one placement, hidden faces left out. Stays where it is: it points into itself.
-  struct Pieces {
-    std::vector<Piece> points, leaves;
-    Indices visible_points, visible_leaves;  ///< where some faces are hidden
-  };
-  void find_pieces(const Scene::Impl& scene, const PlacedTree& placed, Pieces& pieces) const;
+  void find_lists(const Scene::Impl& scene, PlacedTree& placed) const;
   void place_camera(const LayerPass& pass, const SidePlanes& sides, const CutOptions& cut,
                     PlacedTree& placed);
-  void load_triangles(const Scene::Impl& scene, std::vector<Pieces>& pieces,
-                      std::span<const std::size_t> batch);
-  void number(PlacedTree& placed, Pieces& pieces);
-  void fill(const Scene::Impl& scene, PlacedTree& placed, const Pieces& pieces);
-  void fill_points(PlacedTree& placed, const Piece& piece, const Indices& faces);
-  void fill_triangles(PlacedTree& placed, const Piece& piece, const Indices& faces);
+  void load_triangles(std::span<const std::size_t> batch);
+  void load_seen(const NumberSet& seen);
+  void gather_points(const Scene::Impl& scene, const PlacedTree& placed, const NumberSet& seen);
+  void gather_triangles(const Scene::Impl& scene, const PlacedTree& placed, const NumberSet& seen);
   std::uint32_t group_of_node(const PlacedTree& placed, std::uint32_t node) const;
   std::uint32_t group_of_leaf(const PlacedTree& placed, std::uint32_t rank) const;
   Indices faces_of(const Scene::Impl& scene, const PlacedTree& placed) const;
-  void make_runs(const Scene::Impl& scene);
+  void make_runs(const Scene::Impl& scene, const SeenNumbers& seen);
 
   std::vector<PartTree> trees_;
   std::uint32_t layer_ = 0;
   std::vector<PlacedTree> placed_;
-  std::vector<std::size_t> order_, drawn_, last_drawn_;
-  std::size_t point_count_ = 0, triangle_count_ = 0;
-  bool refilled_ = false;  ///< some list, in this frame
+  std::vector<std::size_t> order_, drawn_;
+  std::size_t point_count_ = 0, leaf_count_ = 0, triangle_count_ = 0;
   MeshArena arena_;
+  std::vector<EncodedNode> points_;
+  std::vector<PointExtra> extras_;
+  std::vector<DrawnTriangle> triangles_;
   std::vector<TreeRun> point_runs_, triangle_runs_;
 };
 

@@ -1,6 +1,6 @@
 // What a point tree shows under a pixel: a node as the second-order surface that it stands for, or a triangle.
 uniform usamplerBuffer points;         // a node each
-uniform usamplerBuffer point_extras;   // each point's curvature, number of the node, face, -
+uniform usamplerBuffer point_extras;   // each point's curvature (the highest 8 bits: times this / 255), number of the node, face, the normal that the curvature's axis counts from
 uniform usamplerBuffer drawn_triangles;  // each drawn triangle's: index into triangles, face
 uniform usamplerBuffer vertices;       // place, place, normal, color
 uniform usamplerBuffer triangles;      // three vertices, number in the tree
@@ -35,7 +35,7 @@ Surface point_surface(uint index, vec2 at) {
   Placed placed = placed_at(instance, at);
   vec4 grid = texelFetch(grids, 2 * instance), more = texelFetch(grids, 2 * instance + 1);
   uvec4 node = texelFetch(points, int(index));
-  uvec3 extra = texelFetch(point_extras, int(index)).xyz;
+  uvec4 extra = texelFetch(point_extras, int(index));
   vec3 n = node_normal(node.w), center = grid.xyz + grid.w * node_place(node.xy);
   float radius = grid.w * node_radius(node.z);
 
@@ -50,9 +50,12 @@ Surface point_surface(uint index, vec2 at) {
   if (far > radius) offset *= radius / max(far, 1e-30);
 
   Surface result;
-  vec2 k = vec2(signed_square(extra.x & 0xffu), signed_square(extra.x >> 8 & 0xffu)) / max(radius, 1e-30);
+  vec2 k = vec2(signed_square(extra.x & 0xffu), signed_square(extra.x >> 8 & 0xffu)) * (float(extra.x >> 24) / 255.0) / max(radius, 1e-30);
   float angle = float(extra.x >> 16 & 0xffu) * (3.14159265358979 / 256.0);
-  vec3 x = node_axis(n), y = cross(n, x), e1 = cos(angle) * x + sin(angle) * y, e2 = cross(n, e1);
+  vec3 m = node_normal(extra.w), x = node_axis(m), e1 = cos(angle) * x + sin(angle) * cross(m, x);
+  e1 -= n * dot(n, e1);
+  e1 = dot(e1, e1) > 1e-12 ? normalize(e1) : node_axis(n);
+  vec3 e2 = cross(n, e1);
   vec2 p = vec2(dot(offset, e1), dot(offset, e2));
   vec3 normal = n - k.x * p.x * e1 - k.y * p.y * e2;
   // A point whose middle is seen shows no back: beyond the outline its normals stay perpendicular to the ray.

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <random>
 
 #include "../../core/parallel.h"
@@ -40,6 +41,29 @@ std::size_t covered(const SplatRaster& raster) {
   return count;
 }
 
+/// In pieces of 4096, on several threads.
+void add_points(SplatRaster& raster, const SplatProjection& projection, std::span<const EncodedNode> nodes,
+                std::uint32_t first, Splatting splatting) {
+  std::vector<std::uint32_t> all(nodes.size());
+  std::iota(all.begin(), all.end(), 0U);
+  constexpr std::size_t kPiece = 4096;
+  parallel_for((all.size() + kPiece - 1) / kPiece, [&](std::size_t i) {
+    const std::size_t from = i * kPiece, count = std::min(kPiece, all.size() - from);
+    const SplatList list{std::span(all).subspan(from, count), first + static_cast<std::uint32_t>(from)};
+    raster.add_points(
+        projection, {&list, 1}, [&](std::uint32_t k) { return nodes[k]; }, splatting);
+  });
+}
+/// Each triangle as a leaf of its own.
+void add_triangles(SplatRaster& raster, const SplatProjection& projection,
+                   std::span<const SplatVertex> vertices, std::span<const SplatTriangle> triangles,
+                   std::span<const std::uint32_t> leaves, std::uint32_t first) {
+  const SplatList list{leaves, first};
+  raster.add_triangles(projection, vertices, triangles, {&list, 1}, [](std::uint32_t leaf) {
+    return std::array{leaf, leaf + 1};
+  });
+}
+
 SplatVertex vertex(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   return {{x | y << 21, y >> 11 | z << 10}, 0, 0};
 }
@@ -48,7 +72,7 @@ TEST(SplatRaster, APointCoversThePixelsWithinItsRadiusAndAtLeastOne) {
   SplatRaster raster;
   raster.begin(kSize, kSize);
   const EncodedNode nodes[] = {node(10, 10, 5, 0), node(30, 30, 5, 4)};
-  raster.add_points(flat(), nodes, 7, Splatting::simple);
+  add_points(raster, flat(), nodes, 7, Splatting::simple);
   EXPECT_EQ(number_at(raster, 10, 10), 7u);
   std::size_t disc = 0;
   for (int y = 0; y < kSize; ++y)
@@ -66,7 +90,7 @@ TEST(SplatRaster, TheNearestIsKeptAndOfEqualOnesTheFirst) {
   SplatRaster raster;
   raster.begin(kSize, kSize);
   const EncodedNode nodes[] = {node(9, 9, 1, 3), node(9, 9, 8, 2), node(9, 9, 8, 2)};
-  raster.add_points(flat(), nodes, 0, Splatting::simple);
+  add_points(raster, flat(), nodes, 0, Splatting::simple);
   EXPECT_EQ(number_at(raster, 9, 9), 1u);
   EXPECT_EQ(number_at(raster, 11, 9), 0u);
 }
@@ -82,10 +106,10 @@ TEST(SplatRaster, DiscsOfOneSlantedPlaneMeetHalfway) {
   const EncodedNode nodes[] = {encode(a), encode(b)};
   SplatRaster raster;
   raster.begin(kSize, kSize);
-  raster.add_points(tilted, nodes, 0, Splatting::simple);
+  add_points(raster, tilted, nodes, 0, Splatting::simple);
   for (int x = 13; x < 33; ++x) EXPECT_EQ(number_at(raster, x, 20), x < 23 ? 0u : 1u) << x;
   raster.begin(kSize, kSize);
-  raster.add_points(facing, nodes, 0, Splatting::simple);
+  add_points(raster, facing, nodes, 0, Splatting::simple);
   EXPECT_EQ(number_at(raster, 27, 20), 0u) << "the nearer one reaches over the other's middle";
 }
 
@@ -93,7 +117,7 @@ TEST(SplatRaster, HolesLieBehindTheMiddlesOfTheirNeighbours) {
   SplatRaster raster;
   raster.begin(kSize, kSize);
   const EncodedNode nodes[] = {node(10, 10, 50, 4), node(12, 10, 49, 4)};
-  raster.add_points(flat(), nodes, 0, Splatting::visibility);
+  add_points(raster, flat(), nodes, 0, Splatting::visibility);
   EXPECT_EQ(number_at(raster, 10, 10), 0u);
   EXPECT_EQ(number_at(raster, 12, 10), 1u);
   EXPECT_EQ(number_at(raster, 11, 10), SplatRaster::kHole | 0u);
@@ -106,11 +130,11 @@ TEST(SplatRaster, WhatLiesOutsideOrBehindIsLeftOut) {
   SplatProjection p = flat();
   p.x[3] = -1e9;
   const EncodedNode far[] = {node(10, 10, 5, 4)};
-  raster.add_points(p, far, 0, Splatting::simple);
+  add_points(raster, p, far, 0, Splatting::simple);
   p = flat();
   p.perspective = true, p.depth = {0, 0, 1, -10}, p.depth_terms = {0, 0, 1}, p.nearest_depth = 0.1;
   const EncodedNode behind[] = {node(10, 10, 5, 4)};
-  raster.add_points(p, behind, 0, Splatting::simple);
+  add_points(raster, p, behind, 0, Splatting::simple);
   EXPECT_EQ(covered(raster), 0u);
 }
 
@@ -145,7 +169,7 @@ TEST(SplatRaster, NeighbouringTrianglesShareNoPixelAndLeaveNone) {
       SplatRaster raster;
       raster.begin(kSize, kSize);
       const std::uint32_t list[] = {t};
-      raster.add_triangles(flat(scale), vertices, triangles, list, 3);
+      add_triangles(raster, flat(scale), vertices, triangles, list, 3);
       for (int i = 0; i < kSize * kSize; ++i) {
         if (raster.pixels()[static_cast<std::size_t>(i)] == 0) continue;
         ++count[static_cast<std::size_t>(i)];
@@ -162,7 +186,7 @@ TEST(SplatRaster, DepthIsTheTrianglesOwn) {
   const SplatVertex vertices[] = {vertex(0, 0, 100), vertex(kSize * 2, 0, 300), vertex(0, kSize * 2, 500)};
   const SplatTriangle triangles[] = {{0, 1, 2, 0}};
   const std::uint32_t list[] = {0};
-  raster.add_triangles(flat(), vertices, triangles, list, 0);
+  add_triangles(raster, flat(), vertices, triangles, list, 0);
   EXPECT_EQ(covered(raster), static_cast<std::size_t>(kSize * kSize));
   for (int y = 0; y < kSize; y += 7)
     for (int x = 0; x < kSize; x += 5) {
@@ -188,12 +212,31 @@ TEST(SplatRaster, TrianglesAreCutAtTheNearestDepthAndTheGuardBand) {
   const std::uint32_t list[] = {0};
   SplatRaster raster;
   raster.begin(kSize, kSize);
-  raster.add_triangles(p, vertices, triangles, list, 0);
+  add_triangles(raster, p, vertices, triangles, list, 0);
   for (int y = 0; y < kSize; ++y)
     EXPECT_EQ(number_at(raster, kSize / 2, y) != 0xffffffffU, y >= kSize / 2) << y;
   const auto near = raster.pixels()[static_cast<std::size_t>((kSize - 1) * kSize + kSize / 2)];
   EXPECT_NEAR(std::bit_cast<float>(static_cast<std::uint32_t>(near >> 32)),
               0.5 * (kSize - 0.5 - kSize / 2) / (kSize / 2), 1e-4);
+}
+
+TEST(SplatRaster, LeavesHaveFourNumbersEach) {
+  SplatRaster raster;
+  raster.begin(kSize, kSize);
+  std::vector<SplatVertex> vertices;
+  std::vector<SplatTriangle> triangles;
+  for (std::uint32_t i = 0; i < 5; ++i) {  // one above the other
+    for (const auto& [x, y] : {std::array{0U, 0U}, std::array{8U, 0U}, std::array{0U, 8U}})
+      vertices.push_back(vertex(x, y + 10 * i, 5));
+    triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2, 0});
+  }
+  const std::array<std::uint32_t, 2> ranges[] = {{3, 5}, {0, 3}};
+  const std::uint32_t leaves[] = {1, 0};
+  const SplatList list{leaves, 8};
+  raster.add_triangles(flat(), vertices, triangles, {&list, 1}, [&](std::uint32_t i) { return ranges[i]; });
+  const std::uint32_t expected[] = {8, 9, 10, 12, 13};
+  for (int i = 0; i < 5; ++i)
+    EXPECT_EQ(number_at(raster, 1, 10 * i + 1), SplatRaster::kTriangle | expected[i]) << i;
 }
 
 TEST(SplatRaster, TheNextPictureBeginsEmptyAndThreadsDoNotMatter) {
@@ -203,10 +246,10 @@ TEST(SplatRaster, TheNextPictureBeginsEmptyAndThreadsDoNotMatter) {
     nodes.push_back(node(random() % kSize, random() % kSize, random() % 200, (random() % 40) / 10.0));
   SplatRaster several, one;
   several.begin(kSize, kSize);
-  several.add_points(flat(), nodes, 0, Splatting::visibility);
+  add_points(several, flat(), nodes, 0, Splatting::visibility);
   set_thread_limit(1);
   one.begin(kSize, kSize);
-  one.add_points(flat(), nodes, 0, Splatting::visibility);
+  add_points(one, flat(), nodes, 0, Splatting::visibility);
   set_thread_limit(0);
   EXPECT_EQ(one.pixels(), several.pixels());
   several.begin(kSize, kSize);
