@@ -20,7 +20,7 @@ struct PictureExtent {
 /// For tiles of the picture the farthest that is visible in them (Greene et al. 1993, with one level).
 class Occlusion {
  public:
-  static constexpr int kTile = 16;
+  static constexpr int kTile = 8;
 
   void begin(int width, int height);
   /// Something has been drawn there since.

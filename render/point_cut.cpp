@@ -46,7 +46,7 @@ double largest_stretch(const Mat3& m) {
 /// w above l / 4.
 double way_for(double angle, double l, double ratio) {
   const double rate = 1 + 5 * ratio;
-  const double way = -l * std::expm1(-angle / rate);
+  const double way = l * angle / (rate + angle);
   return std::min({way, 0.75 * l, l * (1 - ratio / 0.6)});
 }
 
@@ -76,7 +76,8 @@ CutView cut_view(const PartCamera& camera, const SceneInstance& instance, const 
   return cut;
 }
 
-PointCut::PointCut(std::shared_ptr<const PointTree> tree) : tree_(std::move(tree)) {
+PointCut::PointCut(std::shared_ptr<const PointTree> tree)
+    : tree_(std::move(tree)), trusted_nodes_(tree_->trusted_nodes()) {
   std::uint64_t width = 1;
   const TreeShape& shape = tree_->shape();
   if (shape.nodes() > kSmallTree)
@@ -84,11 +85,6 @@ PointCut::PointCut(std::shared_ptr<const PointTree> tree) : tree_(std::move(tree
   chunk_count_ = static_cast<std::size_t>(width);
   chunks_.resize(chunk_count_);
   for (std::size_t i = 0; i < chunk_count_; ++i) chunks_[i].root = first_chunk_ + i;
-}
-
-EncodedNode PointCut::node_at(std::uint64_t index) const {
-  const auto node = tree_->nodes(index, 1);
-  return node.empty() ? EncodedNode{} : node[0];
 }
 
 PointCut::Decision PointCut::decide(const EncodedNode& node, bool leaf) const {
@@ -171,24 +167,48 @@ class PointCut::Walk {
 
   void coherent() {
     const std::vector<Entry>& front = chunk_.front;
+    find_due();
     bool changed = false;
-    for (std::size_t i = 0; i < front.size();) {
-      const Entry& e = front[i];
-      if (!is_due(e)) {
-        chunk_.next.push_back(e);
-        ++i;
-        continue;
-      }
+    std::size_t i = 0;
+    for (std::size_t k = 0; k < chunk_.due.size(); ++k) {
+      if (k + kAhead < chunk_.due.size()) fetch(front[chunk_.due[k + kAhead]].node);
+      const std::size_t due = chunk_.due[k];
+      if (due < i) continue;  // something above stands for it
+      keep(i, due);
+      const Entry& e = front[due];
       const std::uint64_t top = look_again(e, changed);
-      if (top == e.node)
-        ++i;
-      else
+      i = due + 1;
+      if (top != e.node)
         while (i < front.size() && TreeShape::is_below(front[i].node, top)) ++i;
     }
+    keep(i, front.size());
     finish(changed);
   }
 
  private:
+  /// Entries that wait for memory while others are looked at.
+  static constexpr std::size_t kAhead = 8;
+
+  void find_due() {
+    const std::vector<Entry>& front = chunk_.front;
+    std::size_t count = 0;
+    chunk_.due.resize(front.size());
+    for (std::size_t i = 0; i < front.size(); ++i) {
+      chunk_.due[count] = static_cast<std::uint32_t>(i);
+      count += is_due(front[i]);
+    }
+    chunk_.due.resize(count);
+  }
+  void keep(std::size_t first, std::size_t last) {
+    const auto at = [&](std::size_t i) { return chunk_.front.begin() + static_cast<std::ptrdiff_t>(i); };
+    chunk_.next.insert(chunk_.next.end(), at(first), at(last));
+  }
+  void fetch(std::uint64_t node) const {
+    if (!cut_.trusted_nodes_) return;
+    __builtin_prefetch(cut_.trusted_nodes_ + node);
+    if (node > 0) __builtin_prefetch(cut_.trusted_nodes_ + TreeShape::parent(node));
+  }
+
   /// Until which motions a node's parent is certainly open. Culling does not count: where a parent is culled
   /// all its children are, and draw as little themselves.
   struct ParentDue {
@@ -197,8 +217,10 @@ class PointCut::Walk {
   static constexpr ParentDue kNoParent{std::numeric_limits<float>::infinity(),
                                        std::numeric_limits<float>::infinity()};
 
+  /// Without branches: which of the three it is cannot be foreseen.
   bool is_due(const Entry& e) const {
-    return e.depth < chunk_.motion.depth || e.side < chunk_.motion.side || e.eye < chunk_.motion.eye;
+    return static_cast<int>(e.depth < chunk_.motion.depth) | static_cast<int>(e.side < chunk_.motion.side) |
+           static_cast<int>(e.eye < chunk_.motion.eye);
   }
   bool silhouette() const { return cut_.view_.options.silhouette; }
 
@@ -294,12 +316,19 @@ class PointCut::Walk {
     chunk_.has_front = true;
     chunk_.changed = changed;
     if (!changed) return;
-    chunk_.points.clear(), chunk_.leaves.clear();
+    list(State::point, chunk_.points);
+    list(State::triangles, chunk_.leaves);
+    for (std::uint32_t& leaf : chunk_.leaves) leaf = static_cast<std::uint32_t>(shape_.leaf_rank(leaf));
+  }
+
+  void list(State state, std::vector<std::uint32_t>& nodes) const {
+    nodes.resize(chunk_.front.size());
+    std::size_t count = 0;
     for (const Entry& e : chunk_.front) {
-      if (static_cast<State>(e.state) == State::point) chunk_.points.push_back(e.node);
-      if (static_cast<State>(e.state) == State::triangles)
-        chunk_.leaves.push_back(static_cast<std::uint32_t>(shape_.leaf_rank(e.node)));
+      nodes[count] = e.node;
+      count += static_cast<State>(e.state) == state;
     }
+    nodes.resize(count);
   }
 
   const PointCut& cut_;

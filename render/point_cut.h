@@ -94,6 +94,7 @@ class PointCut {
     Slack motion{0, 0, 0};  ///< since the front was begun
     bool has_front = false, changed = false;
     std::vector<std::uint32_t> points, leaves;
+    std::vector<std::uint32_t> due;  ///< indices into the front
     std::uint64_t visited = 0;
   };
   /// Part of the front in depth-first order: a chunk's, or (in a chunk of its own) a single node above.
@@ -105,9 +106,14 @@ class PointCut {
   void walk_top(std::uint64_t node, const Hidden& hidden, std::vector<std::size_t>& active);
   void add_motion(const CutView& last);
   Decision decide(const EncodedNode& node, bool leaf) const;
-  EncodedNode node_at(std::uint64_t index) const;
+  EncodedNode node_at(std::uint64_t index) const {
+    if (trusted_nodes_) return trusted_nodes_[index];
+    const auto node = tree_->nodes(index, 1);
+    return node.empty() ? EncodedNode{} : node[0];
+  }
 
   std::shared_ptr<const PointTree> tree_;
+  const EncodedNode* trusted_nodes_ = nullptr;
   std::uint64_t first_chunk_ = 0;  ///< the node of the first chunk; above it are no chunks
   std::vector<Chunk> chunks_;      ///< then one for each node above that is drawn
   std::size_t chunk_count_ = 0;

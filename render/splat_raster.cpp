@@ -67,6 +67,9 @@ bool is_usable(const Projected& p) {
          std::abs(p.y) < kGuardBand;
 }
 
+/// Points that are projected together.
+constexpr std::size_t kAtOnce = 64;
+
 /// Rounded down, without a call into a library. Of less than 2^31 in size.
 std::int32_t floor_of(double v) {
   constexpr double kShift = 4294967296.0;
@@ -96,8 +99,24 @@ class SplatRaster::Points {
     for (std::size_t k = 0; k < 3; ++k) cross_[k] = turns[k];
   }
 
-  void add(const EncodedNode& node, std::uint32_t number) {
-    const Vec3 clip = projector_.clip(node_center(node));
+  /// kAtOnce at most, with the numbers first, first + 1, ….
+  void add(std::span<const EncodedNode> nodes, std::uint32_t first) {
+    std::array<double, kAtOnce> x, y, z;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const Vec3 center = node_center(nodes[i]);
+      x[i] = center.x, y[i] = center.y, z[i] = center.z;
+    }
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const Vec3 clip = projector_.clip({x[i], y[i], z[i]});
+      x[i] = clip.x, y[i] = clip.y, z[i] = clip.z;
+    }
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      add(nodes[i], {x[i], y[i], z[i]}, first + static_cast<std::uint32_t>(i));
+  }
+  const Rows& rows() const { return rows_; }
+
+ private:
+  void add(const EncodedNode& node, const Vec3& clip, std::uint32_t number) {
     if ((projection_.perspective && !(clip.z > 0)) || projector_.is_cut_away(clip)) return;
     const Projected at = projector_.project(clip);
     if (!is_usable(at)) return;
@@ -120,9 +139,7 @@ class SplatRaster::Points {
     if (behind > 0) disc(at, radius, [key = key_of(behind, number | kHole)](double, double) { return key; });
     middle(at, key_of(at.z, number));
   }
-  const Rows& rows() const { return rows_; }
 
- private:
   void middle(const Projected& at, std::uint64_t key) {
     const int x = floor_of(at.x), y = floor_of(at.y);
     if (x < 0 || y < 0 || x >= raster_.width_ || y >= raster_.height_) return;
@@ -380,11 +397,15 @@ void SplatRaster::add_rows(int first, int last) {
 }
 
 void SplatRaster::add_points(const SplatProjection& projection, std::span<const SplatList> lists,
-                             const NodeAt& node_at, Splatting splatting) {
+                             const CopyNodes& copy_nodes, Splatting splatting) {
   Points points(*this, projection, splatting);
+  std::array<EncodedNode, kAtOnce> nodes;
   for (const SplatList& list : lists)
-    for (std::size_t i = 0; i < list.items.size(); ++i)
-      points.add(node_at(list.items[i]), list.first + static_cast<std::uint32_t>(i));
+    for (std::size_t from = 0; from < list.items.size(); from += kAtOnce) {
+      const auto items = list.items.subspan(from, std::min(kAtOnce, list.items.size() - from));
+      copy_nodes(items, nodes.data());
+      points.add({nodes.data(), items.size()}, list.first + static_cast<std::uint32_t>(from));
+    }
   add_rows(points.rows().first, points.rows().last);
 }
 

@@ -63,11 +63,11 @@ class SplatRaster {
 
   // Several threads may add at once.
 
-  /// The node of a number in a list.
-  using NodeAt = std::function<EncodedNode(std::uint32_t)>;
+  /// Writes the nodes of some items of a list.
+  using CopyNodes = std::function<void(std::span<const std::uint32_t> items, EncodedNode* nodes)>;
   /// Points with the numbers list.first, list.first + 1, …; below kHole.
-  void add_points(const SplatProjection& projection, std::span<const SplatList> lists, const NodeAt& node_at,
-                  Splatting splatting);
+  void add_points(const SplatProjection& projection, std::span<const SplatList> lists,
+                  const CopyNodes& copy_nodes, Splatting splatting);
   /// The triangles [first, last) of a leaf in a list, four at most.
   using TrianglesOf = std::function<std::array<std::uint32_t, 2>(std::uint32_t)>;
   /// Leaves' triangles, both sides of them, with the numbers kTriangle | list.first + 4 i + k.

@@ -277,10 +277,7 @@ class TreeLayers::Impl : public Layer {
     const PointTree& tree = p.cut.tree();
     raster_.add_points(
         projection, lists,
-        [&](std::uint32_t node) {
-          const auto encoded = tree.nodes(node, 1);
-          return encoded.empty() ? EncodedNode{} : encoded[0];
-        },
+        [&](std::span<const std::uint32_t> items, EncodedNode* nodes) { tree.copy_nodes(items, nodes); },
         splatting);
   }
 

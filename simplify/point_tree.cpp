@@ -204,6 +204,22 @@ std::span<const EncodedNode> PointTree::nodes(std::uint64_t first, std::uint64_t
   return {reinterpret_cast<const EncodedNode*>(bytes.data()), count};
 }
 
+const EncodedNode* PointTree::trusted_nodes() const {
+  return sections_->trusted ? reinterpret_cast<const EncodedNode*>(sections_->section[kNodes].data())
+                            : nullptr;
+}
+
+void PointTree::copy_nodes(std::span<const std::uint32_t> indices, EncodedNode* nodes) const {
+  if (const EncodedNode* const all = trusted_nodes()) {
+    for (const std::uint32_t index : indices) *nodes++ = all[index];
+    return;
+  }
+  for (const std::uint32_t index : indices) {
+    const auto node = this->nodes(index, 1);
+    *nodes++ = node.empty() ? EncodedNode{} : node[0];
+  }
+}
+
 std::uint32_t PointTree::curvature(std::uint64_t node) const {
   const std::span<const char> all = sections_->section[kCurvatures];
   if (4 * node + 4 > all.size()) return 0;

@@ -64,6 +64,10 @@ class PointTree {
   /// Nodes [first, first + count) of the breadth-first order; empty, once and for all, where their page is
   /// damaged.
   std::span<const EncodedNode> nodes(std::uint64_t first, std::uint64_t count) const;
+  /// All of them where their pages need no check, as in a tree that was built here; else null.
+  const EncodedNode* trusted_nodes() const;
+  /// Each of some nodes; as if all bits were 0 where its page is damaged.
+  void copy_nodes(std::span<const std::uint32_t> indices, EncodedNode* nodes) const;
   /// Of an interior node; 0 in a tree that has none.
   std::uint32_t curvature(std::uint64_t node) const;
   /// The group of the leaf with that rank.

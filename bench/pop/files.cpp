@@ -24,9 +24,9 @@ double build(const Subject& subject, PointTreeKind kind, std::shared_ptr<const P
 
 }  // namespace
 
-Json measure_build(Subject& subject, const PopOptions&) {
+Json measure_build(Subject& subject, int repeat) {
   std::vector<double> pop, qsplat;
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < repeat; ++i) {
     pop.push_back(build(subject, PointTreeKind::pop, subject.pop));
     qsplat.push_back(build(subject, PointTreeKind::qsplat, subject.qsplat));
   }

@@ -62,10 +62,18 @@ double rmse(const Frame& a, const Frame& b) {
   return std::sqrt(sum / (3.0 * static_cast<double>(std::max<std::size_t>(1, count))));
 }
 
+/// What the frames of times_of() did, medians too.
+struct Stages {
+  std::vector<double> cut, lists, raster;
+  void add(const TreeLayerStats& s) {
+    cut.push_back(s.cut_ms), lists.push_back(s.gather_ms), raster.push_back(s.raster_ms);
+  }
+};
+
 /// Medians over frames that take turns, each with a camera a little off the last one's, as when somebody
 /// looks around.
 std::vector<double> times_of(Renderer& renderer, std::vector<DrawnTrees*> kinds, const Camera& camera,
-                             int repeat) {
+                             int repeat, Stages* stages = nullptr) {
   std::vector<std::vector<double>> times(kinds.size());
   for (int i = -2; i < repeat; ++i)
     for (std::size_t k = 0; k < kinds.size(); ++k) {
@@ -74,6 +82,7 @@ std::vector<double> times_of(Renderer& renderer, std::vector<DrawnTrees*> kinds,
       moved.eye += aside * (0.004 * i);
       const double ms = renderer.draw_only(*kinds[k]->scene, moved, screen())->milliseconds;
       if (i >= 0) times[k].push_back(ms);
+      if (i >= 0 && stages && kinds[k]->layers) stages->add(kinds[k]->layers->stats());
     }
   std::vector<double> medians;
   for (auto& t : times) medians.push_back(median(t));
@@ -206,13 +215,15 @@ Json measure_instances(const Subject& subject, Renderer& renderer, const PopOpti
     }
     DrawnTrees trees = make_scene(renderer, model, subject.pop, {});
     const Camera camera = camera_that_covers(renderer, trees, bounding_box(model), options.size / 2, 0.25);
-    const double ms = times_of(renderer, {&trees}, camera, options.repeat)[0];
+    Stages stages;
+    const double ms = times_of(renderer, {&trees}, camera, options.repeat, &stages)[0];
     const bool cube = grid[1] > 1 || (&grid == grids.data());
     const TreeLayerStats s = trees.layers->stats();
     std::printf(
         "  instances  %2d x %d x %d %7.2f ms (cut %.2f, lists %.2f, raster %.2f), %8lu points %8lu "
-        "triangles, %lu hidden\n",
-        grid[0], grid[1], grid[2], ms, s.cut_ms, s.gather_ms, s.raster_ms, s.points, s.triangles, s.hidden);
+        "triangles, %lu hidden, %lu visited\n",
+        grid[0], grid[1], grid[2], ms, median(stages.cut), median(stages.lists), median(stages.raster),
+        s.points, s.triangles, s.hidden, s.visited);
     rows.push_back(
         {{"grid", grid}, {"ms", ms}, {"hidden", cube}, {"points", s.points}, {"triangles", s.triangles}});
   }

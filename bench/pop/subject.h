@@ -57,7 +57,7 @@ Camera close_camera(const PolygonMesh& mesh, int size, double part);
 double milliseconds(const std::chrono::steady_clock::time_point& start);
 
 // Each prints what it finds and returns it.
-nlohmann::json measure_build(Subject& subject, const PopOptions& options);
+nlohmann::json measure_build(Subject& subject, int repeat);
 nlohmann::json measure_file(const Subject& subject, const PopOptions& options);
 nlohmann::json measure_cuts(const Subject& subject, Renderer& renderer, const PopOptions& options);
 nlohmann::json measure_error(const Subject& subject, Renderer& renderer, const PopOptions& options);

@@ -32,7 +32,8 @@ TEST(SeenNumbers, AreThoseOfThePictureWithoutGaps) {
     const std::uint32_t item[] = {0};
     const SplatList list{item, 0};
     raster.add_points(
-        projection, {&list, 1}, [&](std::uint32_t) { return encode(whole); }, Splatting::simple);
+        projection, {&list, 1}, [&](std::span<const std::uint32_t>, EncodedNode* to) { *to = encode(whole); },
+        Splatting::simple);
     std::set<std::uint32_t> points, triangles;
     for (int y = 0; y < kSize; ++y)
       for (std::uint64_t& pixel : raster.row(y)) {
@@ -82,8 +83,8 @@ TEST(SeenNumbers, ASetIsWalkedBetweenAnyTwoNumbers) {
     set.each(first, last, [&](std::size_t number, std::uint32_t less) {
       ASSERT_TRUE(at != expected.end());
       EXPECT_EQ(number, *at++);
-      EXPECT_EQ(less, static_cast<std::uint32_t>(
-                          std::distance(expected.begin(), expected.find(static_cast<std::uint32_t>(number)))));
+      EXPECT_EQ(less, static_cast<std::uint32_t>(std::distance(
+                          expected.begin(), expected.find(static_cast<std::uint32_t>(number)))));
       EXPECT_EQ(set.less_than(number), less);
     });
     EXPECT_EQ(at, expected.lower_bound(static_cast<std::uint32_t>(last)));

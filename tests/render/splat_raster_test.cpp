@@ -51,7 +51,11 @@ void add_points(SplatRaster& raster, const SplatProjection& projection, std::spa
     const std::size_t from = i * kPiece, count = std::min(kPiece, all.size() - from);
     const SplatList list{std::span(all).subspan(from, count), first + static_cast<std::uint32_t>(from)};
     raster.add_points(
-        projection, {&list, 1}, [&](std::uint32_t k) { return nodes[k]; }, splatting);
+        projection, {&list, 1},
+        [&](std::span<const std::uint32_t> items, EncodedNode* to) {
+          for (const std::uint32_t k : items) *to++ = nodes[k];
+        },
+        splatting);
   });
 }
 /// Each triangle as a leaf of its own.
