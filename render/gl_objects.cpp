@@ -48,7 +48,11 @@ Result<GlProgram> build_program(const Gl& gl, const ProgramText& text) {
     gl.DeleteShader(shader);  // lives on with the program
   };
   attach(GL_VERTEX_SHADER, text.vertex);
-  if (!text.fragment.empty() && problem.empty()) attach(GL_FRAGMENT_SHADER, text.fragment);
+  // Without a fragment shader, compatibility profiles add their fixed function, and what Mesa links then
+  // captures nothing.
+  if (problem.empty())
+    attach(GL_FRAGMENT_SHADER,
+           text.fragment.empty() ? std::vector<std::string>{"void main() {}\n"} : text.fragment);
   if (!problem.empty()) return {StatusCode::no_device, problem};
   if (!text.feedback.empty())
     gl.TransformFeedbackVaryings(program.name(), static_cast<GLsizei>(text.feedback.size()),

@@ -52,7 +52,6 @@ Status Renderer::Impl::composite(const HostView& host, const ViewRays& view, con
   const auto name = program(depth_picture ? "composite by depth" : "composite", text);
   if (!name) return name.status();
   set_view(*name, view);
-  set_view(*name, view);
   const auto uniform = [&](const char* n) { return gl->GetUniformLocation(*name, n); };
   gl->BindFramebuffer(GL_DRAW_FRAMEBUFFER, state.draw_framebuffer());
   const auto terms = host_depth_terms(host, view, state);

@@ -1,8 +1,6 @@
 // Building programs on first use, and the uniforms that all of them share.
 #include <algorithm>
 
-#include <cstdio>
-#include <cstdlib>
 #include "part_camera.h"
 #include "renderer_impl.h"
 
@@ -31,11 +29,6 @@ Result<GLuint> Renderer::Impl::program(const std::string& wanted, const ProgramT
                 {"tiles", kTilesUnit},
                 {"triangle_faces", kTriangleFacesUnit}};
   for (const auto& unit : text.units) full.units.push_back(unit);
-  if (getenv("DBGP")) {
-    fprintf(stderr, "PROGRAM %s:", key.c_str());
-    for (auto& d : full.defines) fprintf(stderr, " [%s]", d.c_str());
-    fprintf(stderr, "\n");
-  }
   auto built = build_program(*gl, full);
   if (!built) return built.status();
   const GLuint name = built->name();
