@@ -77,7 +77,7 @@ Status Renderer::Impl::fill_slots() {
   // Fresh storage every pass: a driver that rasterises later (llvmpipe) may still be reading the last pass's
   // slots.
   slots_.assign(nullptr, count * kSlotBytes, GL_STREAM_COPY);
-  ProgramText text{{"prepare.vert"}, {"prepare.frag"}, {}, {}, {}};
+  ProgramText text{{"prepare.vert"}, {}, {}, {}, {}};
   text.feedback.assign(std::begin(kSlotOutputs), std::end(kSlotOutputs));
   const auto prepare = program("prepare", text);
   if (!prepare) return prepare.status();
