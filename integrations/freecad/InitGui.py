@@ -7,6 +7,7 @@ class DupinWorkbench(Gui.Workbench):
 
     def Initialize(self):
         import dupin_commands
+        import dupin_view  # noqa: F401: takes a while, better now than with the first command
 
         dupin_commands.register()
         self.appendToolbar("Dupin", dupin_commands.NAMES)

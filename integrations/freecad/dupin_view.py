@@ -22,6 +22,7 @@ import dupin_shapes
 
 TOLERANCE_PX = 0.5  # a resting view is refined to this
 READERS = 4         # files read at once
+REST_S = 0.1        # a camera that stands still so long rests
 CLOSED_MS = 300     # until a window that closes is gone
 _shown = {}         # Shown by document and object name
 _views = []
@@ -129,7 +130,8 @@ class Drawn:
     def __init__(self):
         self.scene = dupin.Scene()
         self.slots = {}  # by object and how often it was met before: [number, version, placement, visible, color]
-        self.refined, self.last, self.stats = None, None, {}
+        self.refined, self.last, self.last_camera, self.time, self.stats = None, None, None, 0, {}
+        self.waits_for = None  # "rest": the camera's, to refine then; "finer": what is being prepared
 
     def update(self, found):
         met, wanted = {}, set()
@@ -162,19 +164,29 @@ class Drawn:
         slot[1:] = [shown.version, place, True, shown.color()]
 
     def draw(self, camera, options, wait):
+        refining = self.scene.refining  # looked at before: what is ready is drawn
         self.stats = self.scene.draw(*camera, **options)
-        same = self.last is not None and all(np.array_equal(a, b) for a, b in zip(camera, self.last))
-        self.last = camera
-        if self.stats["bound_px"] <= TOLERANCE_PX or not (same or wait):
-            return
-        asked = camera_bytes(camera) + b"".join(s[2].tobytes() + bytes([s[1] % 251, s[3]]) for s in self.slots.values())
-        if asked != self.refined:
-            self.refined = asked
+        view = camera_bytes(camera) + b"".join(s[2].tobytes() + bytes([s[1] % 251, s[3]]) for s in self.slots.values())
+        same, self.last, self.last_camera, self.time = view == self.last, view, camera, time.monotonic()
+        if self.stats["bound_px"] <= TOLERANCE_PX or (view == self.refined and not refining):
+            self.waits_for = None
+        elif view == self.refined:
+            self.waits_for = "finer"
+        elif same or wait:
+            self.refined, self.waits_for = view, "finer"
             self.scene.refine(*camera, tolerance_px=TOLERANCE_PX)
-        if wait:
+        else:
+            self.waits_for = "rest"
+        if wait and self.waits_for:
             while self.scene.refining:
                 time.sleep(0.002)
             self.stats = self.scene.draw(*camera, **options)
+
+    def due(self):
+        """Whether it is time to draw again."""
+        if self.waits_for == "rest":
+            return time.monotonic() > self.time + REST_S
+        return self.waits_for == "finer" and not self.scene.refining
 
 
 def camera_bytes(camera):
@@ -217,10 +229,6 @@ class ExactView:
             self.graph.addChild(self.last)
         self.last.touch()
 
-    def waits(self):
-        """Whether something finer is being prepared, or will be if the camera rests."""
-        return bool(self.drawn) and (self.drawn.scene.refining or self.stats.get("bound_px", 0) > TOLERANCE_PX)
-
     # ---- during a traversal
 
     def _begin(self, _, action):
@@ -258,7 +266,7 @@ class ExactView:
         drawn.draw(camera(state), options, wait=not own)
         self.stats = drawn.stats
         self.frames += 1
-        if own and self.waits():
+        if own and drawn.waits_for:
             _watch.wake()
 
     def _own_context(self):
@@ -368,6 +376,7 @@ def show(objects):
             _shown[key_of(obj)] = Shown(obj)
             _watch.queue(_shown[key_of(obj)])
     attach()
+    _watch.look()
     _watch.wake()
 
 
@@ -387,7 +396,8 @@ def redraw():
 
 
 def busy():
-    return bool(_watch.waiting or any(s.job for s in _shown.values()) or any(v.drawn and v.drawn.scene.refining for v in _views))
+    """Whether anything is being prepared, or will be if the cameras rest."""
+    return bool(_watch.waiting or any(s.job for s in _shown.values()) or any(v.drawn and v.drawn.waits_for for v in _views))
 
 
 class Watch(QtCore.QObject):
@@ -418,10 +428,10 @@ class Watch(QtCore.QObject):
             if shown.key in _shown:
                 self._guard(shown, shown.start)
                 running += 1
-        finer = any(v.waits() and not v.drawn.scene.refining for v in _views)
-        if ready or finer:
-            redraw()
-        if not busy() and not (finer and any(v.drawn.refined is None for v in _views if v.drawn)):
+        for view in _views:
+            if ready or (view.drawn and view.drawn.due()):
+                view.redraw()
+        if not busy():
             self.timer.stop()
 
     @staticmethod
