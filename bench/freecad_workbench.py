@@ -90,8 +90,7 @@ def in_freecad():
         import dupin_view
 
         exact = dupin_view.of(view)
-        spin(30, lambda: exact.error or (exact.frames and len(exact.found) and not any(not s.prepared for s in dupin_view._shown.values())
-                                         and {f[0].key for f in exact.found} == set(dupin_view._shown)))
+        spin(30, lambda: exact.error or (exact.drawn and {key for key, _ in exact.drawn.slots} == set(dupin_view._shown)))
         seen["seconds"], seen["objects"], seen["error"] = time.perf_counter() - start, len(dupin_view._shown), exact.error
         seen["primitives"], seen["size"] = exact.stats.get("primitives"), view.getSize()
         shown = list(dupin_view._shown.values())

@@ -4,6 +4,7 @@
 #define DUPIN_RENDER_GL_STATE_H
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "gl_objects.h"
@@ -24,6 +25,10 @@ class GlStateGuard {
   std::array<double, 2> depth_range() const { return depth_range_; }
   bool clip_zero_to_one() const { return clip_depth_ == GL_ZERO_TO_ONE; }
   bool srgb_conversion() const { return enabled_[kSrgb]; }
+  /// x, y, width, height; none: everywhere.
+  std::optional<std::array<GLint, 4>> scissor() const {
+    return enabled_[kScissor] ? std::optional(scissor_) : std::nullopt;
+  }
   /// Depth test, scissor, color mask and sRGB conversion as the host has them, and writing to its first color
   /// buffer alone.
   void use_host_output() const;

@@ -1,6 +1,8 @@
 // Drawing into a host's framebuffer: a picture of our own, put there pixel by pixel against the host's depth
 // buffer.
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "gl_state.h"
 #include "renderer_impl.h"
@@ -41,10 +43,42 @@ bool own_depth_picture(const DrawOptions& options) {
   return options.samples > 1;
 }
 
+/// What may be drawn beyond the box of the geometry: edges, points.
+constexpr double kMarginPx = 10;
+
+/// The pixels x, y, width, height, from the lower left corner, that what is in the box may cover.
+std::array<int, 4> covered(const Box3& box, const ViewRays& view) {
+  double lo_x = view.width, lo_y = view.height, hi_x = 0, hi_y = 0;
+  for (int i = 0; i < 8 && !box.empty(); ++i) {
+    const Vec3 p = box.corner(i) - view.eye;
+    const double depth = dot(p, view.forward), z = view.perspective ? depth : 1;
+    // What reaches behind the eye may be anywhere.
+    if (!(z > 0) || !std::isfinite(depth)) return {0, 0, view.width, view.height};
+    const double x = ((dot(p, view.right) / z - view.ox) / view.sx + 1) / 2 * view.width;
+    const double y = (1 - (dot(p, view.up) / z - view.oy) / view.sy) / 2 * view.height;
+    lo_x = std::min(lo_x, x), hi_x = std::max(hi_x, x);
+    lo_y = std::min(lo_y, y), hi_y = std::max(hi_y, y);
+  }
+  const auto pixel = [](double at, int size) { return static_cast<int>(std::clamp<double>(at, 0, size)); };
+  const int x = pixel(lo_x - kMarginPx, view.width), y = pixel(lo_y - kMarginPx, view.height);
+  return {x, y, std::max(pixel(hi_x + kMarginPx, view.width) - x, 0),
+          std::max(pixel(hi_y + kMarginPx, view.height) - y, 0)};
+}
+
+/// Of a rectangle of pixels, what is in the other too.
+std::array<int, 4> common(const std::array<int, 4>& a, const std::array<int, 4>& b) {
+  const int x = std::max(a[0], b[0]), y = std::max(a[1], b[1]);
+  return {x, y, std::max(std::min(a[0] + a[2], b[0] + b[2]) - x, 0),
+          std::max(std::min(a[1] + a[3], b[1] + b[3]) - y, 0)};
+}
+
 }  // namespace
 
-Status Renderer::Impl::composite(const HostView& host, const ViewRays& view, const DrawOptions& options,
-                                 const GlStateGuard& state) {
+Status Renderer::Impl::composite(const HostView& host, const ViewRays& view, const Box3& box,
+                                 const DrawOptions& options, const GlStateGuard& state) {
+  std::array<int, 4> pixels = covered(box, view);
+  pixels[0] += host.viewport[0], pixels[1] += host.viewport[1];
+  if (const auto scissor = state.scissor()) pixels = common(pixels, *scissor);
   const bool depth_picture = own_depth_picture(options);
   ProgramText text{
       {"screen.vert"}, {"composite.frag"}, {}, {}, {{"colors", kVerticesUnit}, {"depths", kIndicesUnit}}};
@@ -69,6 +103,8 @@ Status Renderer::Impl::composite(const HostView& host, const ViewRays& view, con
   bind(kVerticesUnit, picture(kScreenPicture));
   bind(kIndicesUnit, depth_picture ? picture(kNormalDepthPicture) : depth());
   state.use_host_output();
+  gl->Enable(GL_SCISSOR_TEST);
+  gl->Scissor(pixels[0], pixels[1], pixels[2], pixels[3]);
   gl->Viewport(host.viewport[0], host.viewport[1], host.viewport[2], host.viewport[3]);
   gl->Enablei(GL_BLEND, 0);
   gl->BlendEquationSeparate(GL_FUNC_ADD, GL_FUNC_ADD);
@@ -90,7 +126,7 @@ Status Renderer::draw_into_host(Scene& scene, const HostView& host, const DrawOp
   if (!valid.ok()) return valid;
   const GlStateGuard state(*impl_->gl);
   Status status = impl_->draw_samples(scene.impl(), *view, own);
-  if (status.ok()) status = impl_->composite(host, *view, own, state);
+  if (status.ok()) status = impl_->composite(host, *view, scene.impl().box, own, state);
   if (status.ok() && stats) {
     *stats = impl_->stats(scene.impl());
     const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;

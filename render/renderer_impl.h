@@ -91,7 +91,7 @@ class Renderer::Impl {
   /// From the color picture, a sum of samples, to the screen picture.
   Status resolve(const ViewRays& view, int samples);
   /// Puts what the last draw_samples drew into the host's framebuffer.
-  Status composite(const HostView& host, const ViewRays& view, const DrawOptions& options,
+  Status composite(const HostView& host, const ViewRays& view, const Box3& box, const DrawOptions& options,
                    const GlStateGuard& state);
   /// What the last draw_samples drew.
   void read_frame(const Scene::Impl& scene, const ViewRays& view, const DrawOptions& options, Frame& frame);

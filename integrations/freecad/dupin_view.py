@@ -239,30 +239,31 @@ class ExactView:
         if not self.drawing or not action.isOfType(coin.SoGLRenderAction.getClassTypeId()):
             return
         self.drawing = False
+        found, self.found = self.found, []
         if self.suspended:
             return
         state = action.getState()
         coin.SoCacheElement.invalidate(state)
         try:
-            self._draw(state)
+            self._draw(state, found)
             self.error = None
         except Exception as error:
             if str(error) != self.error:
                 App.Console.PrintError("Dupin: %s\n" % error)
             self.error = str(error)
 
-    def _draw(self, state):
+    def _draw(self, state, found):
         context = QtGui.QOpenGLContext.currentContext()
         own = context is None or context is self._own_context()
         if own and context is not self.context:
             self._enter(context)
-        if not self.found and not self.drawn:
+        if not found and not self.drawn:
             return
         if own and not self.drawn:
             self.drawn = Drawn()
         drawn = self.drawn if own else Drawn()  # of a picture that is saved: gone after it
-        drawn.update(self.found)
-        options = {"shading": self.shading, "edges": any(edges for _, _, edges in self.found), "sections": sections(state)}
+        drawn.update(found)
+        options = {"shading": self.shading, "edges": any(edges for _, _, edges in found), "sections": sections(state)}
         drawn.draw(camera(state), options, wait=not own)
         self.stats = drawn.stats
         self.frames += 1
