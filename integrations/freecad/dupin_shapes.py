@@ -88,13 +88,14 @@ def file_of(obj, look):
 
 
 def face_groups(view_object):
-    """The groups of the scene graph that show an object with its faces, each with whether they show its edges too."""
-    found, switch = [], view_object.SwitchNode
+    """The groups of the scene graph that show an object with its faces, each with whether they show its edges too, and whether
+    another of them is in it: what shows edges has what shows faces alone."""
+    groups, switch = [], view_object.SwitchNode
     for i in range(switch.getNumChildren()):
         group = switch.getChild(i)
         if group.isOfType(coin.SoGroup.getClassTypeId()) and holds(group, coin.SoIndexedFaceSet):
-            found.append((group, holds(group, coin.SoIndexedLineSet)))
-    return found
+            groups.append(group)
+    return [(g, holds(g, coin.SoIndexedLineSet), any(g.findChild(other) >= 0 for other in groups)) for g in groups]
 
 
 def holds(group, kind):

@@ -21,6 +21,7 @@ import dupin
 import dupin_shapes
 
 TOLERANCE_PX = 0.5  # a resting view is refined to this
+SELECTED = [0.013, 0.42, 0.013]  # FreeCAD's green, linear
 READERS = 4         # files read at once
 REST_S = 0.1        # a camera that stands still so long rests
 CLOSED_MS = 300     # until a window that closes is gone
@@ -42,6 +43,7 @@ class Shown:
         self.version = 0   # of what is prepared
         self.look = self.baked = None
         self.hidden = []   # (group, its nodes)
+        self.outlined = False
 
     def start(self):
         """Begins to prepare what the object is now."""
@@ -80,20 +82,34 @@ class Shown:
 
     def look_again(self):
         """After its colors may have changed. Whether it must be prepared again."""
-        self.look = dupin_shapes.colors(self.obj)
+        before, self.look = self.look, dupin_shapes.colors(self.obj)
+        if before[1] != self.look[1]:
+            self.hide_tessellation()
         return self.look != self.baked and len(self.look[0]) > 1
+
+    def faces_of(self, names):
+        """Numbers of faces that FreeCAD calls so, where they are the same here."""
+        info = self.prepared.model.info()
+        if info["instances"] != 1 or info["faces"] != len(self.obj.Shape.Faces) or info["skipped"]:
+            return ()
+        return tuple(int(name[4:]) - 1 for name in names if name.startswith("Face") and name[4:].isdigit())
 
     def hide_tessellation(self):
         self.show_tessellation()
-        for group, edges in dupin_shapes.face_groups(self.obj.ViewObject):
-            here, invisible = coin.SoCallback(), coin.SoDrawStyle()
-            here.setCallback(lambda _, action, edges=edges: self._traversed(action, edges))
+        if self.look[1] > 0:
+            return  # what one sees through is FreeCAD's: Dupin draws what is opaque
+        for group, edges, outer in dupin_shapes.face_groups(self.obj.ViewObject):
+            here, invisible, behind = coin.SoCallback(), coin.SoDrawStyle(), coin.SoPolygonOffset()
+            here.setCallback(lambda _, action, edges=edges, outer=outer: self._traversed(action, edges, outer))
             invisible.style = coin.SoDrawStyle.INVISIBLE
             invisible.setOverride(True)
-            group.insertChild(here, 0)
-            group.insertChild(invisible, 1)
+            # FreeCAD shows triangles that are selected all the same: Dupin's selected faces hide them.
+            behind.factor, behind.units = 2, 2000
+            nodes = (here, invisible, behind)
+            for place, node in enumerate(nodes):
+                group.insertChild(node, place)
             group.ref()  # pivy does not keep nodes
-            self.hidden.append((group, (here, invisible)))
+            self.hidden.append((group, nodes))
 
     def show_tessellation(self):
         for group, nodes in self.hidden:
@@ -107,7 +123,11 @@ class Shown:
         for _, nodes in self.hidden:
             nodes[0].touch()
 
-    def _traversed(self, action, edges):
+    def _traversed(self, action, edges, outer):
+        if outer:
+            self.outlined = edges  # what is in it comes next
+            return
+        edges, self.outlined = edges or self.outlined, False
         if action.isOfType(coin.SoGLRenderAction.getClassTypeId()):
             state = action.getState()
             coin.SoCacheElement.invalidate(state)
@@ -129,16 +149,18 @@ class Drawn:
 
     def __init__(self):
         self.scene = dupin.Scene()
-        self.slots = {}  # by object and how often it was met before: [number, version, placement, visible, color]
+        self.slots = {}  # by object and how often it was met before: [number, version, placement, visible, color, selected]
         self.refined, self.last, self.last_camera, self.time, self.stats = None, None, None, 0, {}
         self.waits_for = None  # "rest": the camera's, to refine then; "finer": what is being prepared
 
     def update(self, found):
-        met, wanted = {}, set()
+        met, wanted, selected = {}, set(), selection()
         for shown, place, _ in found:
             count = met[shown.key] = met.get(shown.key, -1) + 1
             wanted.add((shown.key, count))
-            self._update(self.slots.setdefault((shown.key, count), [None, 0, None, True, None]), shown, place)
+            slot = self.slots.setdefault((shown.key, count), [None, 0, None, True, None, None])
+            self._update(slot, shown, place)
+            self._highlight(slot, shown, selected.get(shown.key))
         for key, slot in list(self.slots.items()):
             if key in wanted:
                 continue
@@ -150,7 +172,7 @@ class Drawn:
                 slot[3] = False
 
     def _update(self, slot, shown, place):
-        number, version, old, seen, color = slot
+        number, version, old, seen, color, _ = slot
         if number is None:
             slot[0] = number = self.scene.add(shown.prepared, place)
         elif version != shown.version:
@@ -161,7 +183,18 @@ class Drawn:
             self.scene.set_visible(number, True)
         if color != shown.color():
             self.scene.set_color(number, shown.color())
-        slot[1:] = [shown.version, place, True, shown.color()]
+        slot[1:5] = [shown.version, place, True, shown.color()]
+
+    def _highlight(self, slot, shown, names):
+        """The whole object where there are no names of faces."""
+        if names == slot[5]:
+            return
+        for chosen, color in ((slot[5], None), (names, SELECTED)):
+            if chosen == ():
+                self.scene.set_highlight(slot[0], color)
+            for face in shown.faces_of(chosen or ()):
+                self.scene.set_highlight(slot[0], color, 0, face)
+        slot[5] = names
 
     def draw(self, camera, options, wait):
         refining = self.scene.refining  # looked at before: what is ready is drawn
@@ -187,6 +220,11 @@ class Drawn:
         if self.waits_for == "rest":
             return time.monotonic() > self.time + REST_S
         return self.waits_for == "finer" and not self.scene.refining
+
+
+def selection():
+    """Names of what is selected of objects; none: all."""
+    return {(s.DocumentName, s.ObjectName): tuple(s.SubElementNames) for s in Gui.Selection.getSelectionEx("*")}
 
 
 def camera_bytes(camera):

@@ -146,6 +146,19 @@ class Document(unittest.TestCase):
         self.assertEqual(self.count("blue", 1), self.count("occluded", 2))
         self.assertEqual(self.count("blue", 2), 0)
 
+    def test_shows_the_selection(self):
+        self.assertEqual(seen["slots"], 1)  # met once
+        rod = self.count("blue", 1)
+        self.assertEqual(self.count("selected", 1), 0)
+        self.assertGreater(self.count("selected", 2), 0.99 * rod)
+        top = hue(pictures["top selected"])
+        self.assertGreater((top == 2).sum(), 0.2 * rod)
+        self.assertLess(np.argwhere(top == 2)[:, 0].mean(), np.argwhere(top == 1)[:, 0].mean())  # above the rest
+
+    def test_leaves_what_is_seen_through_to_freecad(self):
+        self.assertGreater((pictures["seen through"] != pictures["occluded"]).any(2).sum(), 3000)
+        self.assertLess((pictures["opaque again"] != pictures["occluded"]).any(2).mean(), 1e-4)
+
     def test_follows_edits_and_placements(self):
         self.assertGreater(self.count("longer", 2), 1.2 * self.count("occluded", 2))
         self.assert_same_hues("longer", "longer own")
@@ -169,7 +182,7 @@ class Document(unittest.TestCase):
 
     def test_goes_on_after_closing(self):
         self.assertEqual(seen["closed"], 0)
-        self.assertEqual(seen["next"]["primitives"], 6)
+        self.assertEqual(seen["next"]["primitives"], 3)  # the faces of a box that one sees
         self.assertIsNone(seen["error"])
 
 

@@ -156,6 +156,11 @@ def document():
     seen["one"] = len(dupin_view._shown)
     shot("occluded")
 
+    rod.ViewObject.Transparency = 50
+    shot("seen through")
+    rod.ViewObject.Transparency = 0
+    shot("opaque again")
+
     box.ViewObject.Visibility = False
     shot("rod alone")
     box.ViewObject.Visibility = True
@@ -164,6 +169,14 @@ def document():
     rod.ViewObject.Visibility = True
     rod.ViewObject.ShapeColor = (0.0, 0.0, 1.0)
     shot("blue")
+    seen["slots"] = len(view.drawn.slots)
+    Gui.Selection.addSelection(rod)
+    shot("selected")
+    Gui.Selection.clearSelection()
+    top = max(range(3), key=lambda i: rod.Shape.Faces[i].CenterOfMass.z)
+    Gui.Selection.addSelection(doc.Name, rod.Name, "Face%d" % (top + 1))
+    shot("top selected")
+    Gui.Selection.clearSelection()
     rod.ViewObject.ShapeColor = (0.0, 1.0, 0.0)
     rod.Height = 60  # edited: FreeCAD's own at once, the exact one soon
     doc.recompute()
