@@ -23,6 +23,7 @@ import dupin_shapes
 TOLERANCE_PX = 0.5  # a resting view is refined to this
 SELECTED = [0.013, 0.42, 0.013]  # FreeCAD's green, linear
 READERS = 4         # files read at once
+TAKE_S = 0.4        # between changes of what is drawn while more is being prepared
 REST_S = 0.1        # a camera that stands still so long rests
 CLOSED_MS = 300     # until a window that closes is gone
 _shown = {}         # Shown by document and object name
@@ -444,7 +445,7 @@ class Watch(QtCore.QObject):
 
     def __init__(self):
         super().__init__()
-        self.waiting = []
+        self.waiting, self.taken = [], 0
         self.timer = QtCore.QTimer(self)
         self.timer.setInterval(20)
         self.timer.timeout.connect(self.look)
@@ -459,9 +460,12 @@ class Watch(QtCore.QObject):
 
     def look(self):
         ready = [s for s in _shown.values() if s.job and s.job.done]
+        running = sum(1 for s in _shown.values() if s.job) - len(ready)
+        if (running or self.waiting) and time.monotonic() < self.taken + TAKE_S:
+            ready = []  # several together: every change of what is drawn is a frame
         for shown in ready:
             self._guard(shown, shown.take)
-        running = sum(1 for s in _shown.values() if s.job)
+            self.taken = time.monotonic()
         while self.waiting and running < READERS:
             shown = self.waiting.pop(0)
             if shown.key in _shown:
