@@ -413,14 +413,24 @@ void SplatRaster::add_triangles(const SplatProjection& projection, std::span<con
                                 std::span<const SplatTriangle> triangles, std::span<const SplatList> lists,
                                 const TrianglesOf& triangles_of) {
   Triangles filler(*this, projection, vertices);
-  for (const SplatList& list : lists) {
-    std::uint32_t number = kTriangle | list.first;
-    for (const std::uint32_t leaf : list.items) {
-      const auto [first, last] = triangles_of(leaf);
-      for (std::uint32_t t = first; t < last; ++t) filler.add(triangles[t], number + (t - first));
-      number += 4;
+  std::array<std::array<std::uint32_t, 2>, kAtOnce> ranges;
+  for (const SplatList& list : lists)
+    for (std::size_t from = 0; from < list.items.size(); from += kAtOnce) {
+      const std::size_t count = std::min(kAtOnce, list.items.size() - from);
+      // Leaves that are drawn lie apart in memory: it is asked for all of them before any is drawn.
+      for (std::size_t i = 0; i < count; ++i) {
+        ranges[i] = triangles_of(list.items[from + i]);
+        if (ranges[i][0] < ranges[i][1]) __builtin_prefetch(&triangles[ranges[i][0]]);
+      }
+      for (std::size_t i = 0; i < count; ++i)
+        for (std::uint32_t t = ranges[i][0]; t < ranges[i][1]; ++t)
+          for (std::size_t k = 0; k < 3; ++k) __builtin_prefetch(&vertices[triangles[t][k]]);
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t number = (kTriangle | list.first) + static_cast<std::uint32_t>(4 * (from + i));
+        for (std::uint32_t t = ranges[i][0]; t < ranges[i][1]; ++t)
+          filler.add(triangles[t], number + (t - ranges[i][0]));
+      }
     }
-  }
   add_rows(filler.rows().first, filler.rows().last);
 }
 

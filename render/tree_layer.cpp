@@ -16,8 +16,8 @@ namespace {
 
 /// Placements are drawn in so many turns, each of which may hide those that follow.
 constexpr std::size_t kBatches = 16;
-/// Points or leaves that one task draws.
-constexpr std::size_t kTask = 4096;
+/// Points that one task draws, and leaves.
+constexpr std::size_t kPointTask = 4096, kLeafTask = 1024;
 
 double milliseconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -249,7 +249,7 @@ class TreeLayers::Impl : public Layer {
     std::size_t room = 0;
     for (const SplatList& list : triangles ? p.leaves : p.points)
       for (std::size_t from = 0; from < list.items.size();) {
-        if (room == 0) tasks.push_back({&p, triangles, {}}), room = kTask;
+        if (room == 0) tasks.push_back({&p, triangles, {}}), room = triangles ? kLeafTask : kPointTask;
         const std::size_t count = std::min(room, list.items.size() - from);
         tasks.back().lists.push_back({list.items.subspan(from, count),
                                       static_cast<std::uint32_t>(first + list.first + numbers * from)});
@@ -261,7 +261,7 @@ class TreeLayers::Impl : public Layer {
     const Splatting splatting = options_.reconstruct ? Splatting::visibility : Splatting::simple;
     std::vector<RasterTask> tasks;
     for (const std::size_t i : batch)
-      for (const bool triangles : {false, true}) add_tasks(lists_.placed()[i], triangles, tasks);
+      for (const bool triangles : {true, false}) add_tasks(lists_.placed()[i], triangles, tasks);
     parallel_for(tasks.size(), [&](std::size_t i) {
       const PlacedTree& p = *tasks[i].placed;
       const SplatProjection projection = this->projection(pass, p);
