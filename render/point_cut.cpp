@@ -12,6 +12,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Subtrees that are walked on their own, and trees that are not worth being taken apart.
 constexpr std::uint64_t kChunks = 256, kSmallTree = 4096;
+/// Subtrees that one task walks.
+constexpr std::size_t kChunksAtOnce = 8;
 /// Normals within this (the sine of the angle) of perpendicular to the view are a silhouette's.
 constexpr double kSilhouetteSine = 0.17;
 /// Beyond this an angle's slack would have to think of how fast a sphere grows to the eye.
@@ -25,10 +27,19 @@ double plane_at(const Plane3& plane, const Vec3& p) {
   return dot(plane.n, p) + plane.d;
 }
 
-/// The most by which a plane's value can have changed within a sphere.
-double change_within(const Plane3& a, const Plane3& b, const Vec3& center, double radius) {
-  return std::abs(plane_at(a, center) - plane_at(b, center)) + radius * length(a.n - b.n);
-}
+/// From one plane to another.
+class PlaneChange {
+ public:
+  PlaneChange(const Plane3& a, const Plane3& b) : a_(a), b_(b), turn_(length(a.n - b.n)) {}
+  /// The most by which the value can have changed within a sphere.
+  double within(const Vec3& center, double radius) const {
+    return std::abs(plane_at(a_, center) - plane_at(b_, center)) + radius * turn_;
+  }
+
+ private:
+  const Plane3 &a_, &b_;
+  double turn_;
+};
 
 /// By how much a placement stretches what it stretches most.
 double largest_stretch(const Mat3& m) {
@@ -342,8 +353,8 @@ class PointCut::Walk {
 /// Above the chunks every frame walks anew. A node that is drawn there has a chunk of its own behind the
 /// others.
 void PointCut::walk_top(std::uint64_t node, const Hidden& hidden, std::vector<std::size_t>& active) {
-  if (hidden && hidden(node_at(node))) return;
   if (node >= first_chunk_) {
+    if (hidden && hidden(node_at(node))) return;
     const auto chunk = static_cast<std::size_t>(node - first_chunk_);
     active.push_back(chunk);
     segments_.push_back({chunk});
@@ -351,12 +362,13 @@ void PointCut::walk_top(std::uint64_t node, const Hidden& hidden, std::vector<st
   }
   ++visited_;
   const Decision d = decide(node_at(node), tree_->shape().is_leaf(node));
+  if (!d.open && d.state == State::culled) return;
+  if (hidden && hidden(node_at(node))) return;
   if (d.open) {
     for (std::uint64_t k = 0; k < tree_->shape().child_count(node); ++k)
       walk_top(TreeShape::first_child(node) + k, hidden, active);
     return;
   }
-  if (d.state == State::culled) return;
   Chunk single;
   single.root = node;
   if (d.state == State::point)
@@ -369,23 +381,26 @@ void PointCut::walk_top(std::uint64_t node, const Hidden& hidden, std::vector<st
 
 /// Chunks that were not walked lately keep up too.
 void PointCut::add_motion(const CutView& last) {
-  const double eye = distance(view_.eye, last.eye);
+  const double eye = distance(view_.eye, last.eye), depth_scale = length(view_.depth.n);
+  const double stretch = std::abs(depth_scale - length(last.depth.n));
+  const PlaneChange depth(view_.depth, last.depth);
+  const std::array sides{
+      PlaneChange(view_.sides[0], last.sides[0]), PlaneChange(view_.sides[1], last.sides[1]),
+      PlaneChange(view_.sides[2], last.sides[2]), PlaneChange(view_.sides[3], last.sides[3])};
+  const double most = kMostMotion * kLargestGridCoordinate;
   for (std::size_t i = 0; i < chunk_count_; ++i) {
     Chunk& chunk = chunks_[i];
     if (!chunk.has_front) continue;
     const EncodedNode root = node_at(chunk.root);
     const Vec3 c = node_center(root);
     const double r = node_radius(root);
-    chunk.motion.depth += change_within(view_.depth, last.depth, c, r) +
-                          r * std::abs(length(view_.depth.n) - length(last.depth.n));
+    chunk.motion.depth += depth.within(c, r) + r * stretch;
     double side = 0;
-    for (std::size_t k = 0; k < 4; ++k)
-      side = std::max(side, change_within(view_.sides[k], last.sides[k], c, r));
+    for (const PlaneChange& plane : sides) side = std::max(side, plane.within(c, r));
     chunk.motion.side += side;
     chunk.motion.eye += eye;
-    const double scale = kMostMotion * kLargestGridCoordinate;
-    if (chunk.motion.side > scale || chunk.motion.eye > scale ||
-        chunk.motion.depth > scale * std::max(length(view_.depth.n), 1e-300))
+    if (chunk.motion.side > most || chunk.motion.eye > most ||
+        chunk.motion.depth > most * std::max(depth_scale, 1e-300))
       chunk.has_front = false;
   }
 }
@@ -416,7 +431,7 @@ void PointCut::update(const CutView& view, bool coherent, const Hidden& hidden) 
     else
       Walk(*this, chunk).fresh();
   };
-  parallel_for(active.size(), run);
+  parallel_for(active.size(), run, kChunksAtOnce);
 
   point_count_ = leaf_count_ = 0;
   changed_ = !comparable || segments_.size() != last_segments_.size() ||

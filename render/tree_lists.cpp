@@ -31,18 +31,10 @@ PointExtra extra_of(const PointTree& tree, std::uint32_t node, const EncodedNode
 }
 
 /// Clip X and Y times w, and the depth.
-struct ClipBox {
-  Box3 box;
-  void add(const PartCamera& camera, const Vec3& p, double radius = 0) {
-    const Plane3* const planes[] = {&camera.rows[0], &camera.rows[1], &camera.depth};
-    Vec3 value, reach;
-    for (int k = 0; k < 3; ++k) {
-      value[k] = dot(planes[k]->n, p) + planes[k]->d;
-      reach[k] = radius * length(planes[k]->n);
-    }
-    box.add(value - reach), box.add(value + reach);
-  }
-};
+Vec3 to_clip(const PartCamera& camera, const Vec3& p) {
+  return {dot(camera.rows[0].n, p) + camera.rows[0].d, dot(camera.rows[1].n, p) + camera.rows[1].d,
+          dot(camera.depth.n, p) + camera.depth.d};
+}
 
 /// The pixels that points and triangles may cover, and how near they come. Points have their middles in the
 /// box, and stick out of it by `margin` pixels at most, towards the viewer too.
@@ -70,19 +62,38 @@ PictureExtent extent_of(const Box3& clip, const ViewRays& view, const std::array
 }
 
 PictureExtent extent_of_box(const PartCamera& camera, const Box3& box, const LayerPass& pass, double margin) {
-  ClipBox clip;
+  Box3 clip;
   for (int i = 0; i < 8; ++i)
-    clip.add(camera, {i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y, i & 4 ? box.hi.z : box.lo.z});
-  return extent_of(clip.box, pass.view, pass.renderer.draw_list().depth_terms, margin);
+    clip.add(to_clip(
+        camera, {i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y, i & 4 ? box.hi.z : box.lo.z}));
+  return extent_of(clip, pass.view, pass.renderer.draw_list().depth_terms, margin);
 }
 
-/// Spheres contain all that is drawn in their place.
-PictureExtent extent_of_sphere(const PartCamera& camera, const EncodedNode& node, const PointGrid& grid,
-                               const Vec3& anchor, const LayerPass& pass) {
-  ClipBox clip;
-  clip.add(camera, grid.to_part(node_center(node)) - anchor, grid.step * node_radius(node));
-  return extent_of(clip.box, pass.view, pass.renderer.draw_list().depth_terms, 1);
-}
+/// Whether nodes of a placement are hidden: their spheres contain all that is drawn in their place.
+class HiddenNodes {
+ public:
+  HiddenNodes(const LayerPass& pass, const Occlusion& occlusion, const PlacedTree& placed)
+      : pass_(pass),
+        occlusion_(occlusion),
+        camera_(placed.camera),
+        grid_(placed.cut.tree().info().grid),
+        origin_(grid_.origin - pass.scene.parts[placed.tree].anchor),
+        reach_(Vec3{length(camera_.rows[0].n), length(camera_.rows[1].n), length(camera_.depth.n)} *
+               grid_.step) {}
+  bool operator()(const EncodedNode& node) const {
+    const Vec3 middle = to_clip(camera_, origin_ + node_center(node) * grid_.step);
+    const Vec3 reach = reach_ * node_radius(node);
+    return occlusion_.hides(
+        extent_of({middle - reach, middle + reach}, pass_.view, pass_.renderer.draw_list().depth_terms, 1));
+  }
+
+ private:
+  const LayerPass& pass_;
+  const Occlusion& occlusion_;
+  const PartCamera& camera_;
+  const PointGrid& grid_;
+  Vec3 origin_, reach_;
+};
 
 }  // namespace
 
@@ -137,11 +148,7 @@ void TreeLists::update(const LayerPass& pass, std::span<const std::size_t> batch
   parallel_for(batch.size(), [&](std::size_t i) {
     PlacedTree& p = placed_[batch[i]];
     PointCut::Hidden hidden;
-    if (occlusion)
-      hidden = [&](const EncodedNode& node) {
-        return occlusion->hides(extent_of_sphere(p.camera, node, p.cut.tree().info().grid,
-                                                 pass.scene.parts[p.tree].anchor, pass));
-      };
+    if (occlusion) hidden = HiddenNodes(pass, *occlusion, p);
     p.cut.update(p.view, options.coherent, hidden);
     const FaceColors& now = pass.scene.instances[p.instance].colors;
     if (p.found && !p.cut.changed() && p.look.whole == now.whole && p.look.faces == now.faces) return;
