@@ -123,6 +123,14 @@ void add_tree_options(CLI::App& command, RenderOptions& options) {
       ->type_name("NAME")
       ->group(group);
   command
+      .add_option_function<std::string>(
+          "--splat-shape",
+          [&options](const std::string& shape) { options.trees.foreshortened = shape == "ellipse"; },
+          "ellipse: discs lie in the surface, narrow where it is seen at a slant; circle: as published")
+      ->check(CLI::IsMember({"ellipse", "circle"}))
+      ->type_name("NAME")
+      ->group(group);
+  command
       .add_option("--tree-cache", options.tree_folder,
                   "A folder in which the trees of mesh files are kept, to be drawn at once the next time")
       ->check(CLI::ExistingDirectory)

@@ -67,6 +67,9 @@ bool is_usable(const Projected& p) {
          std::abs(p.y) < kGuardBand;
 }
 
+/// How far surfaces leave a node's tangent plane, in radii, over the sine of the cone of their normals.
+constexpr double kSag = 1;
+
 /// Points that are projected together.
 constexpr std::size_t kAtOnce = 64;
 
@@ -125,9 +128,10 @@ class SplatRaster::Points {
     if (radius <= 0.5) return middle(at, key_of(at.z, number));
     if (splatting_ == Splatting::simple) {
       if (projection_.flat)
-        return disc(at, radius, [key = key_of(at.z, number)](double, double) { return key; });
+        return disc(at, {radius, radius, 1, 0}, [key = key_of(at.z, number)](double, double) { return key; });
       const Tilt tilt = tilt_of(node, clip, at, steps);
-      return disc(at, radius, [&](double dx, double dy) {
+      const double narrow = projection_.foreshortened ? narrow_part(node) : 1;
+      return disc(at, ellipse(radius, narrow * radius, tilt), [&](double dx, double dy) {
         const double out = (dx * dx + dy * dy) / (radius * radius);
         const double z =
             at.z + std::clamp(tilt.x * dx + tilt.y * dy, -tilt.reach, tilt.reach) - tilt.reach * out;
@@ -136,7 +140,9 @@ class SplatRaster::Points {
     }
     // Behind the whole sphere, so that no neighbour's middle is hidden.
     const double behind = projector_.buffer_depth(clip.z + steps * projection_.depth_per_step);
-    if (behind > 0) disc(at, radius, [key = key_of(behind, number | kHole)](double, double) { return key; });
+    if (behind > 0)
+      disc(at, {radius, radius, 1, 0},
+           [key = key_of(behind, number | kHole)](double, double) { return key; });
     middle(at, key_of(at.z, number));
   }
 
@@ -165,16 +171,43 @@ class SplatRaster::Points {
     return tilt;
   }
 
+  /// What is seen of a disc's radius across the direction in which it is farther away: the disc's own,
+  /// foreshortened, and how far the surface may leave it as its normals turn.
+  double narrow_part(const EncodedNode& node) const {
+    const std::uint32_t cone = node_cone(node);
+    if (cone == kNoCone) return 1;
+    const Vec3 to_eye = projection_.perspective ? projection_.eye - node_center(node) : projection_.eye;
+    const double cosine = std::abs(dot(node_normal(node), to_eye)) / length(to_eye);
+    const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    return std::min(1.0, cosine + kSag * sine * decode_cone_sine(cone));
+  }
+
+  struct Ellipse {
+    double wide, narrow;  ///< half-axes in pixels
+    double x, y;          ///< unit direction of the narrow one
+  };
+  static Ellipse ellipse(double wide, double narrow, const Tilt& tilt) {
+    const double size = std::hypot(tilt.x, tilt.y);
+    if (!(size > 0)) return {wide, wide, 1, 0};
+    return {wide, std::max(narrow, 0.5), tilt.x / size, tilt.y / size};
+  }
+
   /// The pixels whose centres lie within; at least the one that the middle lies in.
   template <class Key>
-  void disc(const Projected& at, double radius, const Key& key) {
-    const int y0 = std::max(0, static_cast<int>(std::ceil(at.y - radius - 0.5)));
-    const int y1 = std::min(raster_.height_, static_cast<int>(std::floor(at.y + radius - 0.5)) + 1);
+  void disc(const Projected& at, const Ellipse& e, const Key& key) {
+    // xx dx² + 2 xy dx dy + yy dy² <= 1
+    const double across = 1 / (e.narrow * e.narrow), along = 1 / (e.wide * e.wide);
+    const double xx = e.x * e.x * across + e.y * e.y * along, xy = e.x * e.y * (across - along);
+    const double high = std::sqrt(e.x * e.x * e.wide * e.wide + e.y * e.y * e.narrow * e.narrow);
+    const int y0 = std::max(0, static_cast<int>(std::ceil(at.y - high - 0.5)));
+    const int y1 = std::min(raster_.height_, static_cast<int>(std::floor(at.y + high - 0.5)) + 1);
     if (y0 < y1) rows_.add(y0, y1);
     for (int y = y0; y < y1; ++y) {
-      const double dy = y + 0.5 - at.y, half = std::sqrt(std::max(0.0, radius * radius - dy * dy));
-      const int x0 = std::max(0, static_cast<int>(std::ceil(at.x - half - 0.5)));
-      const int x1 = std::min(raster_.width_, static_cast<int>(std::floor(at.x + half - 0.5)) + 1);
+      // Over a row: the middle, and half the width √(1 − dy²/high²) / √xx.
+      const double dy = y + 0.5 - at.y, middle_x = at.x - xy / xx * dy;
+      const double half = std::sqrt(std::max(0.0, 1 - dy * dy / (high * high)) / xx);
+      const int x0 = std::max(0, static_cast<int>(std::ceil(middle_x - half - 0.5)));
+      const int x1 = std::min(raster_.width_, static_cast<int>(std::floor(middle_x + half - 0.5)) + 1);
       for (int x = x0; x < x1; ++x) keep_larger(pixel(x, y), key(x + 0.5 - at.x, dy));
     }
     middle(at, key(0, 0));

@@ -27,6 +27,9 @@ struct SplatProjection {
   double nearest_depth = 0;    ///< triangles are cut here; perspective only
   double pixels_per_step = 1;  ///< of a length of one step; in perspective at the depth 1
   double depth_per_step = 1;   ///< the most that a step changes the depth
+  Vec3 eye;                    ///< in the tree's grid; in parallel the direction towards the viewer
+  /// Discs are as narrow, where they are seen at a slant, as the cone of their normals allows; else circles.
+  bool foreshortened = false;
   bool flat = false;  ///< discs face the viewer, as QSplat's do; else they lie in their tangent planes
   /// What has a negative value of any of them, of clip X, Y, the depth and 1, is cut away.
   std::span<const std::array<double, 4>> sections;

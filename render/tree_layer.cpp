@@ -223,6 +223,8 @@ class TreeLayers::Impl : public Layer {
     projection.pixels_per_step = p.view.pixels_per_step;
     projection.depth_per_step = length(p.camera.depth.n) * grid.step;
     projection.sections = sections_;
+    projection.eye = p.view.eye;
+    projection.foreshortened = options_.foreshortened;
     projection.flat = p.cut.tree().info().kind == PointTreeKind::qsplat;
     return projection;
   }

@@ -18,8 +18,9 @@ struct TreeLayerOptions {
       true;  ///< also the smallest nodes are points below the threshold; else always triangles, as published
   bool reconstruct =
       false;  ///< visibility splatting: points of one pixel, and what is between them filled from around
-  bool occlusion = true;  ///< leave out placements that nearer ones hide; the picture is the same
-  bool coherent = true;   ///< a frame starts from the last one's nodes; the picture is the same
+  bool foreshortened = true;  ///< discs seen at a slant are narrow; else circles, as published
+  bool occlusion = true;      ///< leave out placements that nearer ones hide; the picture is the same
+  bool coherent = true;       ///< a frame starts from the last one's nodes; the picture is the same
 };
 
 /// What the last frame did.

@@ -50,16 +50,14 @@ Camera camera_that_covers(Renderer& renderer, DrawnTrees& drawn, const Box3& box
   return camera_at(box, size, std::sqrt(near * far));
 }
 
-/// RMSE of 8-bit colours over the pixels that either covers.
-double rmse(const Frame& a, const Frame& b) {
-  double sum = 0;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < a.depth.size(); ++i) {
-    if (!std::isfinite(a.depth[i]) && !std::isfinite(b.depth[i])) continue;
-    ++count;
-    for (std::size_t k = 0; k < 3; ++k) sum += std::pow(a.screen[4 * i + k] - b.screen[4 * i + k], 2);
-  }
-  return std::sqrt(sum / (3.0 * static_cast<double>(std::max<std::size_t>(1, count))));
+PictureDifference difference(const Frame& a, const Frame& b, const Camera& camera) {
+  const auto image_of = [&](const Frame& frame) {
+    Image image = to_image(screen_image(frame));
+    image.channel("Z").values = frame.depth;
+    image.pixel_per_depth = 2 * std::tan(camera.fov_degrees * std::numbers::pi / 360) / camera.height;
+    return image;
+  };
+  return *compare(image_of(a), image_of(b), {});
 }
 
 /// What the frames of times_of() did, medians too.
@@ -113,33 +111,49 @@ Json measure_cuts(const Subject& subject, Renderer& renderer, const PopOptions& 
 
 struct Way {
   const char* name;
-  bool pop, silhouette;
+  bool pop;
+  TreeLayerOptions options;
 };
-constexpr Way kWays[] = {{"pop", true, false}, {"pop silhouette", true, true}, {"qsplat", false, false}};
+std::vector<Way> ways() {
+  TreeLayerOptions circles, circles_silhouette, silhouette;
+  circles.foreshortened = circles_silhouette.foreshortened = false;
+  circles_silhouette.silhouette = silhouette.silhouette = true;
+  return {{"qsplat", false, {}},
+          {"pop published", true, circles},
+          {"pop published silhouette", true, circles_silhouette},
+          {"pop", true, {}},
+          {"pop silhouette", true, silhouette}};
+}
 
 Json measure_error(const Subject& subject, Renderer& renderer, const PopOptions& options) {
   Json rows = Json::array();
   DrawnTrees triangles = make_scene(renderer, subject.model, nullptr, {});
   const std::pair<const char*, Camera> cameras[] = {
+      {"half", camera_at(bounding_box(subject.model), options.size, 2)},
       {"whole", camera_at(bounding_box(subject.model), options.size, 1)},
       {"near", close_camera(subject.mesh(), options.size, 0.25)}};
   for (const auto& [name, camera] : cameras) {
     const Frame reference = draw(renderer, triangles, camera);
-    for (const double threshold : {1.0, 2.0, 3.0, 4.5, 7.0, 10.0})
-      for (const Way& way : kWays) {
-        TreeLayerOptions how;
-        how.threshold_px = threshold, how.silhouette = way.silhouette;
-        DrawnTrees trees = make_scene(renderer, subject.model, way.pop ? subject.pop : subject.qsplat, how);
-        const double error = rmse(reference, draw(renderer, trees, camera));
+    for (Way& way : ways())
+      for (const double threshold : {1.0, 2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 20.0}) {
+        way.options.threshold_px = threshold;
+        DrawnTrees trees =
+            make_scene(renderer, subject.model, way.pop ? subject.pop : subject.qsplat, way.options);
+        const PictureDifference d = difference(reference, draw(renderer, trees, camera), camera);
         const TreeLayerStats stats = trees.layers->stats();
-        std::printf("  error      %-6s %-14s %4.1f px %9lu points %9lu triangles  RMSE %.2f\n", name,
-                    way.name, threshold, stats.points, stats.triangles, error);
+        std::printf(
+            "  error      %-6s %-24s %4.1f px %9lu points %9lu triangles  RMSE %5.2f  FLIP %.4f  outline %lu "
+            "px  holes %lu\n",
+            name, way.name, threshold, stats.points, stats.triangles, d.color->rmse_covered, d.color->flip,
+            d.silhouette, d.geometry ? d.geometry->holes : 0);
         rows.push_back({{"camera", name},
                         {"kind", way.name},
                         {"threshold", threshold},
                         {"points", stats.points},
                         {"triangles", stats.triangles},
-                        {"rmse", error}});
+                        {"rmse", d.color->rmse_covered},
+                        {"flip", d.color->flip},
+                        {"outline", d.silhouette}});
       }
   }
   return rows;

@@ -117,6 +117,38 @@ TEST(SplatRaster, DiscsOfOneSlantedPlaneMeetHalfway) {
   EXPECT_EQ(number_at(raster, 27, 20), 0u) << "the nearer one reaches over the other's middle";
 }
 
+/// A disc of radius 12 seen from 60° aside: half as wide in the direction in which it goes back, more by what
+/// its normals allow it to bend, and a circle where nothing is known of them.
+TEST(SplatRaster, DiscsAreAsNarrowAsTheyAreSeenAndTheirNormalsAllow) {
+  PointNode n;
+  n.center = {32, 32, 50}, n.radius = 12;
+  n.normal = {std::sqrt(0.75), 0, 0.5};
+  SplatProjection p = flat();
+  p.perspective = false, p.eye = {0, 0, 1}, p.foreshortened = true;
+  const auto half_axes = [&](std::uint32_t cone) {
+    n.cone = cone;
+    const EncodedNode nodes[] = {encode(n)};
+    SplatRaster raster;
+    raster.begin(kSize, kSize);
+    add_points(raster, p, nodes, 0, Splatting::simple);
+    int wide = 0, high = 0;
+    for (int i = 0; i < kSize; ++i) {
+      wide += number_at(raster, i, 32) == 0;
+      high += number_at(raster, 32, i) == 0;
+    }
+    return std::array{wide, high};
+  };
+  const double bent = 0.5 + std::sqrt(0.75) * 0.25;
+  EXPECT_NEAR(half_axes(0)[0], 12, 1);
+  EXPECT_NEAR(half_axes(0)[1], 24, 1);
+  EXPECT_NEAR(half_axes(64)[0], 24 * bent, 1);
+  EXPECT_NEAR(half_axes(64)[1], 24, 1);
+  EXPECT_NEAR(half_axes(kNoCone)[0], 24, 1);
+  EXPECT_NEAR(half_axes(kNoCone)[1], 24, 1);
+  p.foreshortened = false;
+  EXPECT_NEAR(half_axes(0)[0], 24, 1);
+}
+
 TEST(SplatRaster, HolesLieBehindTheMiddlesOfTheirNeighbours) {
   SplatRaster raster;
   raster.begin(kSize, kSize);

@@ -182,6 +182,31 @@ TEST(TreeLayer, PointsOfSeveralPixelsShadeSmoothly) {
   }
 }
 
+/// Discs that are narrow where they are seen at a slant keep to the outline, and leave no hole.
+TEST(TreeLayer, PointsKeepToTheOutlineWithoutHoles) {
+  for (const Model& model : {model_of(test::ball(160)), model_of(bumpy(200))})
+    for (const bool parallel : {false, true}) {
+      Camera camera = looking(5);
+      camera.orthographic = parallel, camera.ortho_height = 2.6;
+      const Frame triangles = as_triangles(model, camera);
+      const auto outside = [&](bool foreshortened) {
+        TreeLayerOptions options;
+        options.threshold_px = 8, options.foreshortened = foreshortened;
+        Drawn drawn(model, options);
+        const Frame frame = drawn.draw(camera);
+        EXPECT_GT(drawn.layers->stats().points, 10 * drawn.layers->stats().triangles);
+        std::size_t more = 0;
+        for (std::size_t i = 0; i < frame.depth.size(); ++i) {
+          const bool covered = std::isfinite(frame.depth[i]), expected = std::isfinite(triangles.depth[i]);
+          EXPECT_FALSE(expected && !covered) << i;
+          more += covered && !expected;
+        }
+        return more;
+      };
+      EXPECT_LT(5 * outside(true), 3 * outside(false));
+    }
+}
+
 TEST(TreeLayer, CoherentFramesAreTheFreshOnes) {
   const Model model = model_of(bumpy(60));
   TreeLayerOptions options;
