@@ -15,6 +15,8 @@ Status damaged(const std::string& what) {
 }
 
 constexpr std::uint64_t kMostLeaves = std::uint64_t{1} << 29;
+/// What builders make lies below: places on the grid, and boxes of whole models, stay numbers.
+constexpr double kLargestLength = 1e101;
 
 /// Texts as a length and that many bytes.
 class TextReader {
@@ -47,9 +49,9 @@ bool read_group(TextReader& in, MeshGroup& group) {
   return true;
 }
 
-bool finite(const double* values, int count) {
+bool bounded(const double* values, int count) {
   for (int i = 0; i < count; ++i)
-    if (!std::isfinite(values[i])) return false;
+    if (!(std::abs(values[i]) <= kLargestLength)) return false;
   return true;
 }
 
@@ -132,8 +134,8 @@ Status PointTree::read_header() {
     return damaged("its header's checksum is wrong");
   if (h.file_bytes != all.size()) return damaged("its length is wrong");
   if (h.kind > 1 || h.leaves == 0 || h.leaves > kMostLeaves || h.triangles > kMostLeafTriangles * h.leaves ||
-      !finite(h.origin, 3) || !finite(h.box_lo, 3) || !finite(h.box_hi, 3) || !(h.step > 0) ||
-      !finite(&h.step, 1) || !(h.scale > 0) || !finite(&h.scale, 1))
+      !bounded(h.origin, 3) || !bounded(h.box_lo, 3) || !bounded(h.box_hi, 3) || !(h.step > 0) ||
+      !bounded(&h.step, 1) || !(h.scale > 0) || !bounded(&h.scale, 1))
     return damaged("its header's numbers are out of range");
   shape_ = TreeShape(h.leaves);
   if (Status status = check_sections(h, shape_); !status.ok()) return status;

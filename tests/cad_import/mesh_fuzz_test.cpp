@@ -38,7 +38,8 @@ std::vector<Seed> seeds() {
 
 Result<MeshFile> read(const Seed& file) {
   if (file.kind == ".obj")
-    return read_obj(file.bytes, [](std::string_view) { return std::optional<std::string>("newmtl red\nKd 1 0 0\n"); });
+    return read_obj(file.bytes,
+                    [](std::string_view) { return std::optional<std::string>("newmtl red\nKd 1 0 0\n"); });
   if (file.kind == ".ply") return read_ply(file.bytes);
   if (file.kind == ".off") return read_off(file.bytes);
   if (file.kind == ".stl") return read_stl_text(file.bytes);
@@ -55,7 +56,8 @@ std::string fault_of(const Seed& file, std::map<bool, std::size_t>& outcomes) {
     return "asked for " + std::to_string(test::largest_allocation()) + " bytes";
   ++outcomes[result.ok()];
   if (result.ok()) return check(result->mesh).ok() ? "" : check(result->mesh).message;
-  if (result.status().code == StatusCode::ok || result.status().message.empty()) return "refused without a word";
+  if (result.status().code == StatusCode::ok || result.status().message.empty())
+    return "refused without a word";
   if (result.status().message.find('\n') != std::string::npos) return "refused with several lines";
   return "";
 }

@@ -88,7 +88,7 @@ bool holds(const DpsContent& content) {
 std::vector<Bytes> seeds() {
   std::vector<Bytes> all;
   for (const auto& entry : std::filesystem::directory_iterator(DUPIN_DPS_CORPUS))
-    all.push_back(bytes_of(entry.path().string()));
+    if (entry.path().extension() == ".dps") all.push_back(bytes_of(entry.path().string()));
   for (const DpsEncoding encoding : {DpsEncoding::raw, DpsEncoding::packed})
     for (const bool sizes : {false, true}) {
       const std::string path = scratch_file("seed.dps");
