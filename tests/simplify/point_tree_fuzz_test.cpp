@@ -41,10 +41,10 @@ std::vector<std::string> seeds() {
   grouped.groups = {{"a", Color{}}, {"b", std::nullopt}};
   grouped.polygon_groups.assign(grouped.polygon_count(), 1);
   points.positions = colored.positions;
-  std::vector<std::string> all{
-      bytes_of(colored, PointTreeKind::pop), bytes_of(grouped, PointTreeKind::pop),
-      bytes_of(test::ball(9), PointTreeKind::pop), bytes_of(colored, PointTreeKind::qsplat),
-      bytes_of(points, PointTreeKind::qsplat)};
+  std::vector<std::string> all{bytes_of(colored, PointTreeKind::pop), bytes_of(grouped, PointTreeKind::pop),
+                               bytes_of(test::ball(9), PointTreeKind::pop),
+                               bytes_of(colored, PointTreeKind::qsplat),
+                               bytes_of(points, PointTreeKind::qsplat)};
   for (const auto& entry : std::filesystem::directory_iterator(DUPIN_DPS_CORPUS)) {
     if (entry.path().extension() != ".dpt") continue;
     std::ifstream in(entry.path(), std::ios::binary);
@@ -59,8 +59,7 @@ void make_checksums_good(std::string& bytes) {
   if (bytes.size() < sizeof h) return;
   std::memcpy(&h, bytes.data(), sizeof h);
   const ByteRange pages = h.sections[kPages];
-  if (pages.offset >= sizeof h && pages.offset <= bytes.size() &&
-      pages.size <= bytes.size() - pages.offset) {
+  if (pages.offset >= sizeof h && pages.offset <= bytes.size() && pages.size <= bytes.size() - pages.offset) {
     const auto paged = std::span(bytes).subspan(sizeof h, pages.offset - sizeof h);
     for (std::size_t i = 0; i < pages.size / 8 && i * kPointTreePage < paged.size(); ++i) {
       const std::size_t first = i * kPointTreePage;
@@ -102,7 +101,7 @@ TEST(PointTreeFuzz, NoMutatedFileBreaksWhoWalksIt) {
   const auto try_out = [&](const std::string& bytes) -> std::string {
     const auto tree = PointTree::from_bytes(std::make_shared<OwnedBytes>(bytes, false));
     ++(tree.ok() ? opened : refused);
-    const std::string fault = tree.ok()                        ? fault_of(**tree)
+    const std::string fault = tree.ok()                       ? fault_of(**tree)
                               : tree.status().message.empty() ? "refused without a word"
                                                               : "";
     if (!fault.empty()) std::ofstream("tree-fuzz-failure.dpt", std::ios::binary) << bytes;
