@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <future>
 
 #include "coarsening.h"
 #include "fan_triangles.h"
+#include "incidence.h"
 #include "neighborhoods.h"
 #include "stiffness.h"
 
@@ -34,22 +36,26 @@ double lap(Clock::time_point& since) {
   return seconds;
 }
 
+constexpr std::uint32_t kBasisRows = 8192;
+
 /// Ψ after one more prolongation: what is too small to matter goes, and the rest sums to 1 again.
 Sparse<double> coarser_basis(const Sparse<double>& basis, const Sparse<double>& prolongation) {
   const Sparse<double> all = product(basis, prolongation);
-  Sparse<double> kept;
-  kept.columns = all.columns;
-  std::vector<std::pair<std::uint32_t, double>> row;
-  for (std::uint32_t i = 0; i < all.rows(); ++i) {
-    row.clear();
-    double sum = 0;
-    for (std::uint64_t k = all.starts[i]; k < all.starts[i + 1]; ++k)
-      if (all.value[k] >= kLeastBasis) row.emplace_back(all.column[k], all.value[k]), sum += all.value[k];
-    std::sort(row.begin(), row.end());
-    for (const auto& [domain, value] : row) kept.add(domain, value / sum);
-    kept.end_row();
-  }
-  return kept;
+  std::vector<Sparse<double>> parts((all.rows() + kBasisRows - 1) / kBasisRows);
+  parallel_for(parts.size(), [&](std::size_t c) {
+    std::vector<std::pair<std::uint32_t, double>> row;
+    const auto first = static_cast<std::uint32_t>(c) * kBasisRows;
+    for (std::uint32_t i = first; i < std::min(all.rows(), first + kBasisRows); ++i) {
+      row.clear();
+      double sum = 0;
+      for (std::uint64_t k = all.starts[i]; k < all.starts[i + 1]; ++k)
+        if (all.value[k] >= kLeastBasis) row.emplace_back(all.column[k], all.value[k]), sum += all.value[k];
+      std::sort(row.begin(), row.end());
+      for (const auto& [domain, value] : row) parts[c].add(domain, value / sum);
+      parts[c].end_row();
+    }
+  });
+  return joined(parts, all.columns);
 }
 
 Sparse<double> own_basis(std::uint32_t points) {
@@ -137,15 +143,22 @@ DomainBasis DomainBases::level(std::size_t level) const {
   DomainBasis result;
   result.domains = basis.columns;
   result.starts.reserve(impl_->unique_of.size() + 1);
-  for (const std::uint32_t u : impl_->unique_of) {
-    result.domain.insert(result.domain.end(),
-                         basis.column.begin() + static_cast<std::ptrdiff_t>(basis.starts[u]),
-                         basis.column.begin() + static_cast<std::ptrdiff_t>(basis.starts[u + 1]));
-    result.value.insert(result.value.end(),
-                        basis.value.begin() + static_cast<std::ptrdiff_t>(basis.starts[u]),
-                        basis.value.begin() + static_cast<std::ptrdiff_t>(basis.starts[u + 1]));
-    result.starts.push_back(result.domain.size());
-  }
+  for (const std::uint32_t u : impl_->unique_of)
+    result.starts.push_back(result.starts.back() + (basis.starts[u + 1] - basis.starts[u]));
+  result.domain.resize(result.starts.back());
+  result.value.resize(result.starts.back());
+  parallel_for(
+      impl_->unique_of.size(),
+      [&](std::size_t i) {
+        const std::uint32_t u = impl_->unique_of[i];
+        const auto columns = basis.columns_of(u);
+        const auto values = basis.values_of(u);
+        std::copy(columns.begin(), columns.end(),
+                  result.domain.begin() + static_cast<std::ptrdiff_t>(result.starts[i]));
+        std::copy(values.begin(), values.end(),
+                  result.value.begin() + static_cast<std::ptrdiff_t>(result.starts[i]));
+      },
+      kBasisRows);
   return result;
 }
 
@@ -163,6 +176,9 @@ Result<DomainBases> decompose(const SurfacePoints& points, const DecomposeOption
   impl->times.neighborhoods = lap(start);
   Sparse<amg::Coupling> couplings = amg::couplings(unique, *around);
   impl->times.matrix = lap(start);
+  // Beside multigrid, which mostly waits for the one thread of its process.
+  std::future<void> surface = std::async(thread_limit() > 1 ? std::launch::async : std::launch::deferred,
+                                         [&] { keep_surface(points, unique, *around, *impl); });
   impl->unique = static_cast<std::uint32_t>(unique.positions.size());
   if (impl->unique > 1)
     if (Status done =
@@ -170,7 +186,7 @@ Result<DomainBases> decompose(const SurfacePoints& points, const DecomposeOption
         !done.ok())
       return done;
   impl->times.multigrid = lap(start);
-  keep_surface(points, unique, *around, *impl);
+  surface.get();
   impl->classifier = of_originals(around->classifiers, unique.unique_of);
   impl->spacings = of_originals(around->spacings, unique.unique_of);
   for (double& s : impl->spacings) s *= unique.extent;
@@ -197,15 +213,14 @@ std::vector<Domain> domains_of(const DomainBasis& basis, double threshold) {
 
 std::vector<std::vector<std::uint32_t>> domain_neighbors(const std::vector<Domain>& domains,
                                                          std::size_t points, double overlap) {
-  std::vector<std::vector<std::uint32_t>> of_point(points);
-  for (std::uint32_t d = 0; d < domains.size(); ++d)
-    for (const std::uint32_t p : domains[d].points) of_point[p].push_back(d);
+  const amg::Incidence of_point(
+      points, domains.size(), [&](std::size_t d) -> const auto& { return domains[d].points; });
   std::vector<std::vector<std::uint32_t>> neighbors(domains.size());
   std::vector<std::uint32_t> common(domains.size());
   for (std::uint32_t d = 0; d < domains.size(); ++d) {
     std::vector<std::uint32_t> met;
     for (const std::uint32_t p : domains[d].points)
-      for (const std::uint32_t e : of_point[p])
+      for (const std::uint32_t e : of_point.lists_with(p))
         if (e != d && common[e]++ == 0) met.push_back(e);
     for (const std::uint32_t e : met) {
       const double least = static_cast<double>(std::min(domains[d].points.size(), domains[e].points.size()));

@@ -8,6 +8,7 @@
 #include "../../core/parallel.h"
 #include "atlas.h"
 #include "folds.h"
+#include "incidence.h"
 #include "tile.h"
 
 namespace dupin {
@@ -52,12 +53,12 @@ double value_at(const DomainBasis& basis, std::uint32_t point, std::uint32_t dom
 std::vector<TileDomain> tile_domains(const DomainBasis& basis, const std::vector<Domain>& domains,
                                      const std::vector<std::uint32_t>& triangles) {
   std::vector<TileDomain> tiles(domains.size());
-  std::vector<std::vector<std::uint32_t>> of_point(basis.starts.size() - 1);
-  for (std::uint32_t d = 0; d < domains.size(); ++d)
-    for (const std::uint32_t p : domains[d].points) of_point[p].push_back(d);
+  const amg::Incidence of_point(
+      basis.starts.size() - 1,
+      domains.size(), [&](std::size_t d) -> const auto& { return domains[d].points; });
   for (std::uint32_t t = 0; t < triangles.size() / 3; ++t)
     for (std::size_t c = 0; c < 3; ++c)
-      for (const std::uint32_t d : of_point[triangles[3 * t + c]])
+      for (const std::uint32_t d : of_point.lists_with(triangles[3 * t + c]))
         if (tiles[d].triangles.empty() || tiles[d].triangles.back() != t) tiles[d].triangles.push_back(t);
   parallel_for(
       tiles.size(),
@@ -68,7 +69,7 @@ std::vector<TileDomain> tile_domains(const DomainBasis& basis, const std::vector
         for (const std::uint32_t t : tile.triangles)
           for (std::size_t c = 0; c < 3; ++c) {
             const std::uint32_t p = triangles[3 * std::size_t(t) + c];
-            const auto& own = of_point[p];
+            const auto own = of_point.lists_with(p);
             if (std::find(own.begin(), own.end(), static_cast<std::uint32_t>(d)) == own.end())
               others.push_back(p);
           }
@@ -164,15 +165,14 @@ class SetMaker {
   /// Pieces blend with those pieces of their own and of their domain's neighbors that they have points in
   /// common with.
   void link(const std::vector<std::vector<std::uint32_t>>& neighbors) {
-    std::vector<std::vector<std::uint32_t>> of_point(points_.size());
-    for (std::uint32_t t = 0; t < tiles_.size(); ++t)
-      for (const std::uint32_t p : tiles_[t].points) of_point[p].push_back(t);
+    const amg::Incidence of_point(
+        points_.size(), tiles_.size(), [&](std::size_t t) -> const auto& { return tiles_[t].points; });
     std::vector<std::uint32_t> met(tiles_.size(), ~0U);  // the last tile that each was found for
     for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
       const std::uint32_t d = domain_of_[t];
       std::vector<std::uint32_t> found;
       for (const std::uint32_t p : tiles_[t].points)
-        for (const std::uint32_t other : of_point[p]) {
+        for (const std::uint32_t other : of_point.lists_with(p)) {
           if (other == t || met[other] == t) continue;
           met[other] = t;
           if (domain_of_[other] == d ||

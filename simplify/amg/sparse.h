@@ -54,6 +54,25 @@ Sparse<T> transposed(const Sparse<T>& m) {
   return t;
 }
 
+/// The rows of all parts, one after the other.
+template <class T>
+Sparse<T> joined(const std::vector<Sparse<T>>& parts, std::uint32_t columns) {
+  Sparse<T> result;
+  result.columns = columns;
+  std::size_t entries = 0, rows = 0;
+  for (const auto& part : parts) entries += part.column.size(), rows += part.rows();
+  result.starts.reserve(rows + 1);
+  result.column.reserve(entries);
+  result.value.reserve(entries);
+  for (const auto& part : parts) {
+    const std::uint64_t before = result.column.size();
+    for (std::size_t k = 1; k < part.starts.size(); ++k) result.starts.push_back(before + part.starts[k]);
+    result.column.insert(result.column.end(), part.column.begin(), part.column.end());
+    result.value.insert(result.value.end(), part.value.begin(), part.value.end());
+  }
+  return result;
+}
+
 /// a b, by Gustavson: each row's columns come in the order in which they are met first.
 template <class A, class B>
 auto product(const Sparse<A>& a, const Sparse<B>& b) {
@@ -84,20 +103,7 @@ auto product(const Sparse<A>& a, const Sparse<B>& b) {
       part.end_row();
     }
   });
-  Sparse<T> result;
-  result.columns = b.columns;
-  std::size_t entries = 0;
-  for (const auto& part : parts) entries += part.column.size();
-  result.starts.reserve(a.rows() + std::size_t{1});
-  result.column.reserve(entries);
-  result.value.reserve(entries);
-  for (const auto& part : parts) {
-    const std::uint64_t before = result.column.size();
-    for (std::size_t k = 1; k < part.starts.size(); ++k) result.starts.push_back(before + part.starts[k]);
-    result.column.insert(result.column.end(), part.column.begin(), part.column.end());
-    result.value.insert(result.value.end(), part.value.begin(), part.value.end());
-  }
-  return result;
+  return joined(parts, b.columns);
 }
 
 /// pᵀ m p

@@ -43,14 +43,14 @@ class Canvas {
   int height() const { return height_; }
 
   void triangle(const Corner& a, const Corner& b, const Corner& c) {
-    const double area = twice_area(a, b, c.x, c.y);
+    const double area = twice_area(a, b, c.x, c.y), per_area = 1 / area;
     if (area == 0) return;
     const auto [x0, x1] = range(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), width_);
     const auto [y0, y1] = range(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), height_);
     for (int y = y0; y < y1; ++y)
       for (int x = x0; x < x1; ++x) {
-        const double wa = twice_area(b, c, x + 0.5, y + 0.5) / area,
-                     wb = twice_area(c, a, x + 0.5, y + 0.5) / area, wc = 1 - wa - wb;
+        const double wa = twice_area(b, c, x + 0.5, y + 0.5) * per_area,
+                     wb = twice_area(c, a, x + 0.5, y + 0.5) * per_area, wc = 1 - wa - wb;
         if (wa < 0 || wb < 0 || wc < 0) continue;
         const auto mix = [&](double va, double vb, double vc) {
           return static_cast<float>(wa * va + wb * vb + wc * vc);
