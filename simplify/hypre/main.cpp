@@ -73,29 +73,33 @@ HYPRE_IJMatrix to_hypre(Matrix& m) {
   return matrix;
 }
 
-HYPRE_Solver two_levels() {
-  HYPRE_Solver solver;
-  HYPRE_BoomerAMGCreate(&solver);
-  HYPRE_BoomerAMGSetCoarsenType(solver, kCoarsening);
-  HYPRE_BoomerAMGSetInterpType(solver, kInterpolation);
-  HYPRE_BoomerAMGSetStrongThreshold(solver, kStrongThreshold);
-  HYPRE_BoomerAMGSetPMaxElmts(solver, kMostInterpolation);
-  HYPRE_BoomerAMGSetMaxRowSum(solver, 1);
-  HYPRE_BoomerAMGSetMaxLevels(solver, 2);
-  HYPRE_BoomerAMGSetMaxCoarseSize(solver, 1);
-  HYPRE_BoomerAMGSetCycleRelaxType(solver, 0, 3);  // nothing is solved: the coarsest level needs no factors
-  HYPRE_BoomerAMGSetPrintLevel(solver, 0);
-  return solver;
+/// BoomerAMG's set-up of one level as far as its prolongation, from hypre's own stages: the coarse matrix that
+/// HYPRE_BoomerAMGSetup would go on with is not asked for. Null where every point, or none, is a coarse one.
+hypre_ParCSRMatrix* prolongation_of(hypre_ParCSRMatrix* a) {
+  static_assert(kCoarsening == 6 && kInterpolation == 0, "the stages called below");
+  const HYPRE_Int rows = hypre_CSRMatrixNumRows(hypre_ParCSRMatrixDiag(a));
+  hypre_ParCSRMatrix *strong = nullptr, *p = nullptr;
+  hypre_IntArray *coarse = nullptr, *functions = nullptr;
+  HYPRE_BigInt range[2] = {0, 0};
+  hypre_BoomerAMGCreateS(a, kStrongThreshold, 1, 1, nullptr, &strong);
+  hypre_BoomerAMGCoarsenFalgout(strong, a, 0, 0, 0, &coarse);
+  hypre_BoomerAMGCoarseParms(MPI_COMM_SELF, rows, 1, nullptr, coarse, &functions, range);
+  if (range[1] > 0 && range[1] < rows)
+    hypre_BoomerAMGBuildInterp(a, hypre_IntArrayData(coarse), strong, range, 1, nullptr, 0, 0,
+                               kMostInterpolation, &p);
+  hypre_ParCSRMatrixDestroy(strong);
+  hypre_IntArrayDestroy(coarse);
+  return p;
 }
 
-bool answer(const hypre_ParAMGData* data, std::uint32_t rows) {
+bool answer(hypre_ParCSRMatrix* prolongation, std::uint32_t rows) {
   MatrixHeader header;
   header.rows = rows;
-  if (hypre_ParAMGDataNumLevels(data) < 2) {
+  if (!prolongation) {
     const std::vector<HYPRE_Int> none(std::size_t{rows} + 1);
     return write_all(&header, sizeof header) && write_all(none.data(), none.size() * sizeof none[0]);
   }
-  const hypre_CSRMatrix* p = hypre_ParCSRMatrixDiag(hypre_ParAMGDataPArray(data)[0]);
+  const hypre_CSRMatrix* p = hypre_ParCSRMatrixDiag(prolongation);
   header.columns = static_cast<std::uint32_t>(hypre_CSRMatrixNumCols(p));
   header.entries = static_cast<std::uint32_t>(hypre_CSRMatrixI(p)[rows]);
   return write_all(&header, sizeof header) &&
@@ -110,10 +114,9 @@ bool serve_one() {
   const HYPRE_IJMatrix matrix = to_hypre(m);
   HYPRE_ParCSRMatrix rows;
   HYPRE_IJMatrixGetObject(matrix, reinterpret_cast<void**>(&rows));
-  const HYPRE_Solver solver = two_levels();
-  HYPRE_BoomerAMGSetup(solver, rows, nullptr, nullptr);
-  const bool sent = answer(reinterpret_cast<const hypre_ParAMGData*>(solver), m.header.rows);
-  HYPRE_BoomerAMGDestroy(solver);
+  hypre_ParCSRMatrix* prolongation = prolongation_of(rows);
+  const bool sent = answer(prolongation, m.header.rows);
+  hypre_ParCSRMatrixDestroy(prolongation);
   HYPRE_IJMatrixDestroy(matrix);
   return sent;
 }
