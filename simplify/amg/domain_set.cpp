@@ -77,6 +77,7 @@ std::vector<TileDomain> tile_domains(const DomainBasis& basis, const std::vector
         others.erase(std::unique(others.begin(), others.end()), others.end());
         std::merge(others.begin(), others.end(), domains[d].points.begin(), domains[d].points.end(),
                    std::back_inserter(tile.points));
+        amg::find_corners(triangles, tile);
         for (const std::uint32_t p : tile.points)
           tile.values.push_back(static_cast<float>(value_at(basis, p, static_cast<std::uint32_t>(d))));
       },

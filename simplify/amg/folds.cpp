@@ -26,22 +26,18 @@ class Unfolder {
   }
 
  private:
-  std::uint32_t local(std::uint32_t point) const {
-    return static_cast<std::uint32_t>(std::lower_bound(domain_.points.begin(), domain_.points.end(), point) -
-                                      domain_.points.begin());
+  std::uint32_t corner(std::size_t triangle, std::size_t k) const {
+    return domain_.corners[3 * triangle + k];
   }
-  std::uint32_t corner(std::size_t triangle, std::size_t k) const { return corners_[3 * triangle + k]; }
 
   void link() {
     const std::size_t count = domain_.points.size();
-    for (const std::uint32_t t : domain_.triangles)
-      for (std::size_t k = 0; k < 3; ++k) corners_.push_back(local(source_.triangles[3 * t + k]));
     starts_.assign(count + 1, 0);
-    for (const std::uint32_t c : corners_) ++starts_[c + 1];
+    for (const std::uint32_t c : domain_.corners) ++starts_[c + 1];
     std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
-    around_.resize(corners_.size());
+    around_.resize(domain_.corners.size());
     std::vector<std::uint32_t> at(starts_.begin(), starts_.end() - 1);
-    for (std::uint32_t k = 0; k < corners_.size(); ++k) around_[at[corners_[k]]++] = k / 3;
+    for (std::uint32_t k = 0; k < domain_.corners.size(); ++k) around_[at[domain_.corners[k]]++] = k / 3;
     piece_.assign(count, kNone);
   }
 
@@ -138,13 +134,13 @@ class Unfolder {
     }
     for (std::uint32_t p = 0; p < piece_.size(); ++p)
       if (kept[p]) tile.points.push_back(domain_.points[p]), tile.values.push_back(domain_.values[p]);
+    find_corners(source_.triangles, tile);
     return tile;
   }
 
   const TileSource& source_;
   const TileDomain& domain_;
   double total_ = 0;
-  std::vector<std::uint32_t> corners_;          // of the domain's triangles, local
   std::vector<std::uint32_t> starts_, around_;  // triangles around each point
   std::vector<std::uint32_t> piece_;
   std::vector<double> sums_;

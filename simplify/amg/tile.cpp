@@ -15,6 +15,32 @@ constexpr std::uint32_t kNoPoint = std::numeric_limits<std::uint32_t>::max();
 /// A rim point's surface reaches this part of its spacing beyond it.
 constexpr double kRimReach = 0.5;
 
+/// The places of numbers in a list, by open addressing.
+class Places {
+ public:
+  explicit Places(const std::vector<std::uint32_t>& numbers) : numbers_(numbers) {
+    while ((1U << (32 - shift_)) < 2 * numbers.size()) --shift_;
+    slots_.assign(std::size_t{1} << (32 - shift_), kNoPoint);
+    for (std::uint32_t k = 0; k < numbers.size(); ++k) slots_[slot_of(numbers[k])] = k;
+  }
+  std::uint32_t of(std::uint32_t number) const { return slots_[slot_of(number)]; }
+
+ private:
+  /// Where it is, or would be.
+  std::size_t slot_of(std::uint32_t number) const {
+    // Well mixed: what lies together in space may have numbers with any pattern.
+    std::uint32_t mixed = (number ^ number >> 16) * 0x7feb352dU;
+    mixed = (mixed ^ mixed >> 15) * 0x846ca68bU;
+    std::size_t slot = (mixed ^ mixed >> 16) >> shift_;
+    while (slots_[slot] != kNoPoint && numbers_[slots_[slot]] != number)
+      slot = (slot + 1) & (slots_.size() - 1);
+    return slot;
+  }
+  const std::vector<std::uint32_t>& numbers_;
+  std::vector<std::uint32_t> slots_;
+  int shift_ = 31;
+};
+
 struct Sample {
   float z = -std::numeric_limits<float>::infinity(), psi = 0;
   std::array<float, 3> normal{};
@@ -43,14 +69,16 @@ class Canvas {
   int height() const { return height_; }
 
   void triangle(const Corner& a, const Corner& b, const Corner& c) {
-    const double area = twice_area(a, b, c.x, c.y), per_area = 1 / area;
+    const double area = twice_area(a, b, c.x, c.y);
     if (area == 0) return;
     const auto [x0, x1] = range(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), width_);
     const auto [y0, y1] = range(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), height_);
+    const double bx = (c.x - b.x) / area, by = (c.y - b.y) / area, cx = (a.x - c.x) / area,
+                 cy = (a.y - c.y) / area;
     for (int y = y0; y < y1; ++y)
       for (int x = x0; x < x1; ++x) {
-        const double wa = twice_area(b, c, x + 0.5, y + 0.5) * per_area,
-                     wb = twice_area(c, a, x + 0.5, y + 0.5) * per_area, wc = 1 - wa - wb;
+        const double px = x + 0.5, py = y + 0.5, wa = bx * (py - b.y) - by * (px - b.x),
+                     wb = cx * (py - c.y) - cy * (px - c.x), wc = 1 - wa - wb;
         if (wa < 0 || wb < 0 || wc < 0) continue;
         const auto mix = [&](double va, double vb, double vc) {
           return static_cast<float>(wa * va + wb * vb + wc * vc);
@@ -85,9 +113,10 @@ class Canvas {
  private:
   /// Samples whose centers lie between.
   static std::pair<int, int> range(double lo, double hi, int size) {
-    const double first = std::ceil(lo - 0.5), last = std::floor(hi - 0.5) + 1;
-    return {static_cast<int>(std::clamp(first, 0.0, double(size))),
-            static_cast<int>(std::clamp(last, 0.0, double(size)))};
+    // Rounded by hand: without SSE 4.1, ceil and floor are calls.
+    const double from = std::clamp(lo - 0.5, 0.0, double(size)), to = std::clamp(hi + 0.5, 0.0, double(size));
+    const int first = static_cast<int>(from);
+    return {first < from ? first + 1 : first, static_cast<int>(to)};
   }
   int width_, height_;
   std::vector<Sample> samples_;
@@ -203,9 +232,9 @@ class TileMaker {
   Tile run() {
     Canvas canvas(width_ * samples_, height_ * samples_);
     make_corners(canvas);
-    for (const std::uint32_t t : domain_.triangles)
-      canvas.triangle(corner(source_.triangles[3 * t]), corner(source_.triangles[3 * t + 1]),
-                      corner(source_.triangles[3 * t + 2]));
+    for (std::size_t k = 0; k < domain_.corners.size(); k += 3)
+      canvas.triangle(corners_[domain_.corners[k]], corners_[domain_.corners[k + 1]],
+                      corners_[domain_.corners[k + 2]]);
     draw_rim(canvas);
     Texels texels(width_, height_);
     texels.gather(canvas, samples_);
@@ -238,17 +267,10 @@ class TileMaker {
     samples_per_unit_ = std::min(sx, sy);
   }
 
-  const Corner& corner(std::uint32_t point) const {
-    const auto at = std::lower_bound(domain_.points.begin(), domain_.points.end(), point);
-    return corners_[static_cast<std::size_t>(at - domain_.points.begin())];
-  }
-
   void draw_rim(Canvas& canvas) const {
     std::vector<float> falling;
     std::vector<bool> alone(corners_.size(), true);
-    for (const std::uint32_t t : domain_.triangles)
-      for (std::size_t k = 0; k < 3; ++k)
-        alone[static_cast<std::size_t>(&corner(source_.triangles[3 * t + k]) - corners_.data())] = false;
+    for (const std::uint32_t c : domain_.corners) alone[c] = false;
     for (std::size_t k = 0; k < corners_.size(); ++k) {
       const Corner& c = corners_[k];
       if (!source_.rim[c.point] || !(c.psi > 0)) continue;
@@ -334,6 +356,15 @@ void orient(const TileSource& source, const TileDomain& domain, DomainPrimitive&
 }
 
 }  // namespace
+
+void find_corners(const std::vector<std::uint32_t>& triangles, TileDomain& domain) {
+  const Places places(domain.points);
+  domain.corners.clear();
+  domain.corners.reserve(3 * domain.triangles.size());
+  for (const std::uint32_t t : domain.triangles)
+    for (std::size_t k = 0; k < 3; ++k)
+      domain.corners.push_back(places.of(triangles[3 * std::size_t{t} + k]));
+}
 
 DomainPrimitive support(const TileSource& source, const TileDomain& domain, double texel) {
   DomainPrimitive primitive;

@@ -25,7 +25,10 @@ struct TileDomain {
   std::vector<std::uint32_t> points;     ///< ascending: those of the domain and of its triangles
   std::vector<float> values;             ///< Ψ
   std::vector<std::uint32_t> triangles;  ///< indices of triangles that touch the domain
+  std::vector<std::uint32_t> corners;    ///< of each triangle three, as places in `points`
 };
+/// Sets `corners`.
+void find_corners(const std::vector<std::uint32_t>& triangles, TileDomain& domain);
 
 /// Its rectangle: the plane by principal components of its points weighted with Ψ, the sides along the two
 /// longer ones, around all that its textures show. Texels are larger where the tile would have more
