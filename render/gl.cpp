@@ -56,6 +56,9 @@ Result<Gl> load_gl(const GetProcAddress& get_proc_address) {
   if (!missing.empty()) return {StatusCode::no_device, "the OpenGL context lacks " + missing};
   if (major * 10 + minor >= 45 || has_extension(gl, "GL_ARB_clip_control"))
     load(gl.ClipControl, get_proc_address, "glClipControl");
+  GLint profile = 0;
+  gl.GetIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
+  if (!(profile & GL_CONTEXT_CORE_PROFILE_BIT)) load(gl.PixelTransferf, get_proc_address, "glPixelTransferf");
   load_indexed(gl, get_proc_address, major * 10 + minor);
   return gl;
 }

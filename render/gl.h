@@ -21,7 +21,7 @@ namespace dupin {
   X(BLENDFUNCSEPARATE, BlendFuncSeparate) X(BUFFERDATA, BufferData) X(BUFFERSUBDATA, BufferSubData)         \
   X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) X(CLEARBUFFERFV, ClearBufferfv)                         \
   X(CLEARBUFFERUIV, ClearBufferuiv) X(COLORMASK, ColorMask) X(COLORMASKI, ColorMaski)                       \
-  X(COMPILESHADER, CompileShader) X(CREATEPROGRAM, CreateProgram) X(CREATESHADER, CreateShader)             \
+  X(CLAMPCOLOR, ClampColor) X(COMPILESHADER, CompileShader) X(CREATEPROGRAM, CreateProgram) X(CREATESHADER, CreateShader)             \
   X(CULLFACE, CullFace) X(DELETEBUFFERS, DeleteBuffers) X(DELETEFRAMEBUFFERS, DeleteFramebuffers)           \
   X(DELETEPROGRAM, DeleteProgram) X(DELETESHADER, DeleteShader) X(DELETETEXTURES, DeleteTextures)           \
   X(DELETEVERTEXARRAYS, DeleteVertexArrays) X(DEPTHFUNC, DepthFunc) X(DEPTHMASK, DepthMask)                 \
@@ -65,6 +65,11 @@ struct Gl {
   PFNGLDEPTHRANGEINDEXEDPROC DepthRangeIndexed = nullptr;
   PFNGLGETFLOATI_VPROC GetFloati_v = nullptr;
   PFNGLGETDOUBLEI_VPROC GetDoublei_v = nullptr;
+  /// Compatibility contexts alone.
+  void(APIENTRYP PixelTransferf)(GLenum name, GLfloat value) = nullptr;
+  bool compatibility() const {
+    return PixelTransferf != nullptr;
+  }
 };
 
 /// The table of the current context; fails with no_device if it is older than 3.3 or a function is missing.

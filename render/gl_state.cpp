@@ -33,7 +33,7 @@ GLenum symbol(GLint value) {
 
 }  // namespace
 
-GlStateGuard::GlStateGuard(const Gl& gl) : gl_(gl) {
+GlStateGuard::GlStateGuard(const Gl& gl) : gl_(gl), fixed_function_(gl) {
   static_assert(std::size(kCapabilityNames) == kCapabilities && std::size(kPixelStoreNames) == kPixelStores);
   take_bindings();
   take_fixed_function();
@@ -41,6 +41,7 @@ GlStateGuard::GlStateGuard(const Gl& gl) : gl_(gl) {
 }
 
 GlStateGuard::~GlStateGuard() {
+  fixed_function_.put_back();
   put_back_fixed_function();
   put_back_bindings();
 }
@@ -139,6 +140,7 @@ void GlStateGuard::put_back_blending() const {
 }
 
 void GlStateGuard::neutral() const {
+  fixed_function_.neutral();
   for (std::size_t i = 1; i < kCapabilities; ++i) gl_.Disable(kCapabilityNames[i]);
   gl_.Disable(GL_BLEND);
   gl_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
@@ -150,6 +152,21 @@ void GlStateGuard::neutral() const {
     gl_.PixelStorei(store, store == GL_PACK_ALIGNMENT || store == GL_UNPACK_ALIGNMENT ? 4 : 0);
   for (int i = 0; i < kUnits; ++i) gl_.BindSampler(static_cast<GLuint>(i), 0);
   gl_.ActiveTexture(GL_TEXTURE0);
+}
+
+bool GlStateGuard::converts_to_srgb() const {
+  if (!enabled_[kSrgb]) return false;
+  // A window's buffers are asked about by other names than they are drawn to.
+  GLint buffer = GL_NONE, encoding = GL_LINEAR;
+  gl_.GetIntegerv(GL_DRAW_BUFFER0, &buffer);
+  GLenum attachment = symbol(buffer);
+  if (buffer == GL_NONE) return false;
+  if (buffer == GL_BACK) attachment = GL_BACK_LEFT;
+  if (buffer == GL_FRONT || buffer == GL_LEFT || buffer == GL_FRONT_AND_BACK) attachment = GL_FRONT_LEFT;
+  if (buffer == GL_RIGHT) attachment = GL_FRONT_RIGHT;
+  gl_.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment,
+                                          GL_FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING, &encoding);
+  return encoding == GL_SRGB;
 }
 
 void GlStateGuard::use_host_output() const {
@@ -201,7 +218,12 @@ void GlStateGuard::put_back_fixed_function() const {
     gl_.ColorMaski(index, mask[0], mask[1], mask[2], mask[3]);
   }
   // Core profiles have one mode for both sides.
-  gl_.PolygonMode(GL_FRONT_AND_BACK, symbol(polygon_mode_[0]));
+  if (gl_.compatibility()) {
+    gl_.PolygonMode(GL_FRONT, symbol(polygon_mode_[0]));
+    gl_.PolygonMode(GL_BACK, symbol(polygon_mode_[1]));
+  } else {
+    gl_.PolygonMode(GL_FRONT_AND_BACK, symbol(polygon_mode_[0]));
+  }
   gl_.DepthFunc(symbol(depth_func_));
   gl_.CullFace(symbol(cull_face_));
   gl_.FrontFace(symbol(front_face_));

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "gl_fixed_function.h"
 #include "gl_objects.h"
 
 namespace dupin {
@@ -24,7 +25,8 @@ class GlStateGuard {
   GLuint draw_framebuffer() const { return static_cast<GLuint>(draw_framebuffer_); }
   std::array<double, 2> depth_range() const { return depth_range_; }
   bool clip_zero_to_one() const { return clip_depth_ == GL_ZERO_TO_ONE; }
-  bool srgb_conversion() const { return enabled_[kSrgb]; }
+  /// Whether what is written to the host's first color buffer is converted from linear light.
+  bool converts_to_srgb() const;
   /// x, y, width, height; none: everywhere.
   std::optional<std::array<GLint, 4>> scissor() const {
     return enabled_[kScissor] ? std::optional(scissor_) : std::nullopt;
@@ -44,6 +46,7 @@ class GlStateGuard {
   void neutral() const;
 
   const Gl& gl_;
+  FixedFunctionState fixed_function_;
   GLint program_ = 0, vertex_array_ = 0, array_buffer_ = 0, draw_framebuffer_ = 0, read_framebuffer_ = 0;
   GLint pixel_pack_buffer_ = 0, pixel_unpack_buffer_ = 0, active_texture_ = 0, feedback_buffer_ = 0;
   GLint indexed_feedback_ = 0;

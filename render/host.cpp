@@ -28,16 +28,6 @@ std::array<double, 3> host_depth_terms(const HostView& host, const ViewRays& vie
   return {ndc[0] * slope + offset, ndc[1] * slope, ndc[2] * slope};
 }
 
-/// Whether what is written to the framebuffer's first color buffer is converted from linear light.
-bool converts_to_srgb(const Gl& gl, const GlStateGuard& state) {
-  if (!state.srgb_conversion()) return false;
-  GLint encoding = GL_LINEAR;
-  const GLenum attachment = state.draw_framebuffer() ? GL_COLOR_ATTACHMENT0 : GL_BACK_LEFT;
-  gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment,
-                                         GL_FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING, &encoding);
-  return encoding == GL_SRGB;
-}
-
 /// The depth buffer is that of the last sample, which is the pixel's centre only if there is one.
 bool own_depth_picture(const DrawOptions& options) {
   return options.samples > 1;
@@ -95,7 +85,7 @@ Status Renderer::Impl::composite(const HostView& host, const ViewRays& view, con
   gl->Uniform2f(uniform("host_range"), static_cast<float>(std::min(near, far)),
                 static_cast<float>(std::max(near, far)));
   gl->Uniform3i(uniform("place"), host.viewport[0], host.viewport[1], host.viewport[3]);
-  gl->Uniform1i(uniform("encode"), converts_to_srgb(*gl, state) ? 0 : 1);
+  gl->Uniform1i(uniform("encode"), state.converts_to_srgb() ? 0 : 1);
   const auto bind = [&](int unit, const GlTexture& texture) {
     gl->ActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + unit));
     gl->BindTexture(GL_TEXTURE_2D, texture.name());

@@ -16,8 +16,8 @@ struct TestDevice {
   std::unique_ptr<Context> context;
   std::unique_ptr<Renderer> renderer;  // before its context
 
-  explicit TestDevice(Device device = Device::automatic) {
-    auto made = create_context(device);
+  explicit TestDevice(Device device = Device::automatic) : TestDevice(create_context(device)) {}
+  explicit TestDevice(Result<std::unique_ptr<Context>> made) {
     if (!made) throw std::runtime_error(made.status().message);
     context = std::move(*made);
     auto drawn = Renderer::create(context->loader());

@@ -219,6 +219,7 @@ GlState gl_state(const Context& context) {
       GetInteger64i_v(n.value, i, &value);
       state[n.name + (" " + std::to_string(i))] = {double(value)};
     }
+  add_fixed_function_state(context, state);
   return state;
 }
 
@@ -423,6 +424,12 @@ void set_unusual_state(const Context& context, int width, int height) {
   set_pixel_stores(context);
   set_per_draw_buffer(context);
   set_per_viewport(context);
+  function<PFNGLCLAMPCOLORPROC>(context, "glClampColor")(GL_CLAMP_READ_COLOR, GL_TRUE);
+  set_unusual_fixed_function(context);
+}
+
+void draw_into_window(const Context& context) {
+  function<PFNGLBINDFRAMEBUFFERPROC>(context, "glBindFramebuffer")(GL_FRAMEBUFFER, 0);
 }
 
 }  // namespace dupin::testing

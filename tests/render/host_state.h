@@ -23,6 +23,13 @@ std::string differences(const GlState& before, const GlState& after);
 /// feedback or query is active.
 void set_unusual_state(const Context& context, int width, int height);
 
+/// Binds the context's own framebuffer for drawing and reading.
+void draw_into_window(const Context& context);
+
+/// What a compatibility context has besides; nothing in a core one.
+void add_fixed_function_state(const Context& context, GlState& state);
+void set_unusual_fixed_function(const Context& context);
+
 /// The error that is recorded in the context; GL_NO_ERROR: none.
 unsigned gl_error(const Context& context);
 

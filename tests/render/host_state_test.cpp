@@ -1,8 +1,11 @@
 // A host's OpenGL state is the same after every call as before it, however unusual; and no call depends on
 // it.
-#include "host_state.h"
+#include <functional>
+
 #include "../../render/view.h"
 #include "device.h"
+#include "host_state.h"
+#include "pbuffer_context.h"
 
 namespace dupin::testing {
 namespace {
@@ -40,13 +43,19 @@ struct HostScene {
   }
 };
 
-class HostState : public ::testing::TestWithParam<Device> {};
+struct HostKind {
+  const char* name;
+  std::function<Result<std::unique_ptr<Context>>()> create;
+  bool window = false;  ///< draws into the context's own framebuffer
+};
+class HostState : public ::testing::TestWithParam<HostKind> {};
 
 TEST_P(HostState, EveryCallPutsItBack) {
   const HostScene scene;
-  auto context = create_context(GetParam());
+  auto context = GetParam().create();
   if (!context.ok()) GTEST_SKIP() << context.status().message;
   set_unusual_state(**context, kSize, kSize);
+  if (GetParam().window) draw_into_window(**context);
   ASSERT_EQ(gl_error(**context), 0u);
   const GlState before = gl_state(**context);
   ASSERT_EQ(gl_error(**context), 0u);
@@ -83,7 +92,7 @@ TEST_P(HostState, ChangesNoPicture) {
   options.outputs = kEverything | kScreen;
   const auto draw = [&](bool unusual) {
     Frame frame;
-    auto context = create_context(GetParam());
+    auto context = GetParam().create();
     if (!context.ok()) return frame;
     if (unusual) set_unusual_state(**context, kSize, kSize);
     const auto renderer = Renderer::create((*context)->loader());
@@ -103,8 +112,17 @@ TEST_P(HostState, ChangesNoPicture) {
   EXPECT_EQ(usual.face, unusual.face);
 }
 
-INSTANTIATE_TEST_SUITE_P(Drawing, HostState, ::testing::Values(Device::egl, Device::osmesa),
-                         [](const auto& info) { return info.param == Device::egl ? "Egl" : "OsMesa"; });
+INSTANTIATE_TEST_SUITE_P(
+    Drawing, HostState,
+    ::testing::Values(
+        HostKind{"Egl", [] { return create_context(Device::egl); }},
+        HostKind{"OsMesa", [] { return create_context(Device::osmesa); }},
+        HostKind{"Window", [] { return create_pbuffer_context(Profile::core, kSize, kSize); }, true},
+        HostKind{"Compatibility",
+                 [] { return create_pbuffer_context(Profile::compatibility, kSize, kSize); }},
+        HostKind{"CompatibilityWindow",
+                 [] { return create_pbuffer_context(Profile::compatibility, kSize, kSize); }, true}),
+    [](const auto& info) { return info.param.name; });
 
 }  // namespace
 }  // namespace dupin::testing

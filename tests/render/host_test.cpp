@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "device.h"
+#include "pbuffer_context.h"
 
 namespace dupin::testing {
 namespace {
@@ -24,7 +25,9 @@ struct HostCase {
   double off_x = 0, off_y = 0;  ///< of the principal point, in half pictures
   int x = 0, y = 0;             ///< the viewport's place
   int samples = 1;
+  std::optional<Profile> window;  ///< into the framebuffer 0 of such a context; none: into one of the host's
 };
+constexpr int kFramebufferWidth = 200, kFramebufferHeight = 150;
 
 class HostPicture {
  public:
@@ -36,7 +39,7 @@ class HostPicture {
     load(depth_func_, "glDepthFunc"), load(depth_range_, "glDepthRange"),
         load(clip_control_, "glClipControl");
     load(read_pixels_, "glReadPixels");
-    make_framebuffer();
+    if (!c.window) make_framebuffer();
   }
 
   HostView view() const {
@@ -122,7 +125,7 @@ class HostPicture {
                  places[] = {GL_COLOR_ATTACHMENT0, GL_DEPTH_ATTACHMENT};
     for (int i = 0; i < 2; ++i) {
       bind(GL_RENDERBUFFER, buffers[i]);
-      storage(GL_RENDERBUFFER, formats[i], 200, 150);
+      storage(GL_RENDERBUFFER, formats[i], kFramebufferWidth, kFramebufferHeight);
       attach(GL_FRAMEBUFFER, places[i], GL_RENDERBUFFER, buffers[i]);
     }
   }
@@ -177,7 +180,10 @@ TEST_P(Hosts, WhatIsNearerHidesTheOther) {
   made.add(whole_sphere({0, 0, -kDistance + kRadius}, {1, 0, 0}, {0, 1, 0}, kRadius));
   made.model.parts[0].closed = true;
   made.place({});
-  TestDevice gl;
+  auto context = c.window ? create_pbuffer_context(*c.window, kFramebufferWidth, kFramebufferHeight)
+                          : create_context(Device::automatic);
+  if (c.window && !context.ok()) GTEST_SKIP() << context.status().message;
+  TestDevice gl(std::move(context));
   HostPicture picture(*gl.context, c);
   if (c.zero_to_one && !gl.context->proc_address("glClipControl")) GTEST_SKIP() << "no clip control here";
   picture.draw_own();
@@ -230,7 +236,18 @@ INSTANTIATE_TEST_SUITE_P(
         HostCase{
             .name = "ParallelOffCentre", .perspective = false, .wall = 8.8, .off_x = -0.2, .off_y = 0.25},
         HostCase{.name = "PartOfTheFramebuffer", .wall = 8.8, .x = 37, .y = 21},
-        HostCase{.name = "SeveralSamples", .wall = 8.8, .samples = 4}),
+        HostCase{.name = "SeveralSamples", .wall = 8.8, .samples = 4},
+        HostCase{.name = "Window", .wall = 8.8, .window = Profile::core},
+        HostCase{.name = "CompatibilityWindow", .wall = 8.8, .x = 11, .window = Profile::compatibility},
+        HostCase{.name = "CompatibilityWindowParallel",
+                 .perspective = false,
+                 .wall = 8.8,
+                 .range = {0.1, 0.9},
+                 .window = Profile::compatibility},
+        HostCase{.name = "CompatibilityWindowSeveralSamples",
+                 .wall = 8.8,
+                 .samples = 4,
+                 .window = Profile::compatibility}),
     [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
