@@ -16,13 +16,13 @@ struct Transfer {
   GLfloat neutral;
 };
 constexpr Transfer kTransfers[] = {
-    {0x0D10, 0}, {0x0D11, 0},               // map color, map stencil
-    {0x0D12, 0}, {0x0D13, 0},               // index shift and offset
-    {0x0D14, 1}, {0x0D15, 0},               // red scale and bias
-    {0x0D18, 1}, {0x0D19, 0},               // green
-    {0x0D1A, 1}, {0x0D1B, 0},               // blue
-    {0x0D1C, 1}, {0x0D1D, 0},               // alpha
-    {0x0D1E, 1}, {0x0D1F, 0},               // depth
+    {0x0D10, 0}, {0x0D11, 0},  // map color, map stencil
+    {0x0D12, 0}, {0x0D13, 0},  // index shift and offset
+    {0x0D14, 1}, {0x0D15, 0},  // red scale and bias
+    {0x0D18, 1}, {0x0D19, 0},  // green
+    {0x0D1A, 1}, {0x0D1B, 0},  // blue
+    {0x0D1C, 1}, {0x0D1D, 0},  // alpha
+    {0x0D1E, 1}, {0x0D1F, 0},  // depth
 };
 
 }  // namespace

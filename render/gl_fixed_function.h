@@ -1,5 +1,5 @@
-// What is left of the fixed function in a compatibility context and reaches into drawing by shaders, into reading
-// and into uploading: the alpha test, polygon stipple, clamping of colors and pixel transfer.
+// What is left of the fixed function in a compatibility context and reaches into drawing by shaders, into
+// reading and into uploading: the alpha test, polygon stipple, clamping of colors and pixel transfer.
 //
 // Fog, lighting, texture environments, matrices and client arrays do not take part where a shader stands for
 // them, and are never touched.

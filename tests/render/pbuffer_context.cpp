@@ -77,9 +77,18 @@ Result<std::unique_ptr<Context>> create_pbuffer_context(Profile profile, int wid
       egl.get_platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
   if (display == EGL_NO_DISPLAY || !egl.initialize(display, nullptr, nullptr)) return fail("no display");
   egl.bind_api(EGL_OPENGL_API);
-  const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
-                           EGL_RED_SIZE,     8,               EGL_ALPHA_SIZE,      8,
-                           EGL_DEPTH_SIZE,   24,              EGL_STENCIL_SIZE,    8,
+  const EGLint wanted[] = {EGL_SURFACE_TYPE,
+                           EGL_PBUFFER_BIT,
+                           EGL_RENDERABLE_TYPE,
+                           EGL_OPENGL_BIT,
+                           EGL_RED_SIZE,
+                           8,
+                           EGL_ALPHA_SIZE,
+                           8,
+                           EGL_DEPTH_SIZE,
+                           24,
+                           EGL_STENCIL_SIZE,
+                           8,
                            EGL_NONE};
   EGLConfig config = nullptr;
   EGLint count = 0;
@@ -87,14 +96,14 @@ Result<std::unique_ptr<Context>> create_pbuffer_context(Profile profile, int wid
   const EGLint size[] = {EGL_WIDTH, width, EGL_HEIGHT, height, EGL_NONE};
   const EGLSurface surface = egl.create_pbuffer(display, config, size);
   const bool core = profile == Profile::core;
-  const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION_KHR,
-                            3,
-                            EGL_CONTEXT_MINOR_VERSION_KHR,
-                            3,
-                            EGL_CONTEXT_OPENGL_PROFILE_MASK_KHR,
-                            core ? EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT_KHR
-                                 : EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT_KHR,
-                            EGL_NONE};
+  const EGLint version[] = {
+      EGL_CONTEXT_MAJOR_VERSION_KHR,
+      3,
+      EGL_CONTEXT_MINOR_VERSION_KHR,
+      3,
+      EGL_CONTEXT_OPENGL_PROFILE_MASK_KHR,
+      core ? EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT_KHR : EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT_KHR,
+      EGL_NONE};
   const EGLContext context = egl.create_context(display, config, EGL_NO_CONTEXT, version);
   if (surface == EGL_NO_SURFACE || context == EGL_NO_CONTEXT) return fail("no pbuffer with this profile");
   auto result = std::make_unique<PbufferContext>(egl, display, surface, context);
