@@ -11,6 +11,7 @@
 #include "graph_cell.h"
 #include "knot_strips.h"
 #include "merged_patches.h"
+#include "thin_spans.h"
 
 namespace dupin {
 namespace {
@@ -118,6 +119,14 @@ class PatchFace {
     divide_block(patches, second, std::move(cell.arcs));
   }
 
+  /// What any of the patches is off already.
+  void note_errors(const std::vector<FittedPatch>& patches) {
+    for (const FittedPatch& p : patches) {
+      worst_position_ = std::max(worst_position_, p.position_error);
+      worst_normal_ = std::max(worst_normal_, p.normal_error);
+    }
+  }
+
   int made() const { return made_; }
 
  private:
@@ -160,7 +169,7 @@ class PatchFace {
     const bool speck =
         box.diagonal() <= allowed * (cell.arcs.empty() ? 1 : kBesideEdges) || cell.depth >= kMaxDepth;
     if (box.diagonal() <= kSpeck * allowed) return emit_speck(cell, uv, box, {});
-    CellRequest request{tolerance - fitted_position_, in_.normal_tolerance - fitted_normal_, {}, {}};
+    CellRequest request{tolerance - fitted_position_, in_.normal_tolerance - fitted_normal_, {}, {}, allowed};
     CellFit fit = fit_cell(cell.patch, request);
     if (fit.valid && emit(cell, uv, request, fit)) return;
     if (fit.valid && widen_margins(fit)) {
@@ -286,7 +295,7 @@ class PatchFace {
       }
     const double allowed = in_.tolerance.at(box);
     if (std::isinf(allowed)) return true;
-    allowed_ = allowed, fitted_position_ = fitted_normal_ = 0;
+    allowed_ = allowed, fitted_position_ = worst_position_, fitted_normal_ = worst_normal_;
     if (box.diagonal() <= kSpeck * allowed) return emit_speck_block(b, cell, uv, box), true;
     const double tolerance = allowed * (!cell.known ? kTrimTolerance : cell.arcs.empty() ? 1 : kBesideEdges);
     std::optional<MergedPatch> merged = merged_patch(*strips_, b, kMergedShare * tolerance);
@@ -295,7 +304,8 @@ class PatchFace {
     // The fit's parameters run over [−1,1], margins included.
     const double half = (1 + 2 * kMergedMargin) / 2;
     const Remainder& d = merged->beyond;
-    const CellRequest request{tolerance, in_.normal_tolerance, {}, {d.value, d.ds * half, d.dt * half}};
+    const CellRequest request{
+        tolerance, in_.normal_tolerance, {}, {d.value, d.ds * half, d.dt * half}, allowed};
     CellFit fit = fit_cell(cell.patch, request);
     if (!fit.valid || !make_footprint(uv, fit) || !add_overshoot(request, fit)) return false;
     const double gradient[2] = {fit.gradient_t, fit.gradient_s};
@@ -456,7 +466,7 @@ class PatchFace {
         if (is_point[(k + 1) % 4] || is_point[(k + 3) % 4]) {
           overlap_width = std::max(needed, std::min(wanted, reach - bulge));
           fit.overshoot = std::max(fit.overshoot, bulge + overlap_width - reach);
-          fit.margin_needed[k] = bulge > needed ? 1 : 0;
+          fit.margin_needed[k] = bulge > needed ? 1e300 : 0;
         } else {
           if (!(reach - bulge >= needed)) reached = false;
           overlap_width = std::min(wanted, reach - bulge);
@@ -499,7 +509,12 @@ class PatchFace {
     for (const FaceArc* arc : cell.arcs)
       if (chart.add(*arc, pieces)) off = std::max(off, arc->bound);
     // Where the face ends, by as much as its edge is off, points may lie beyond the surface itself.
-    dp.bound = std::hypot(dp.bound, off);
+    // The arcs' tolerance is their own place's, which may be farther from the camera: then the cell makes up
+    // for it.
+    const double both = std::hypot(dp.bound, off);
+    if (both > allowed_ && off <= kBesideEdges * allowed_ && !dp.speck && cell.depth < kMaxDepth / 2)
+      return false;
+    dp.bound = both;
     if (cell.known && pieces.empty()) return count(dp, {}, {}, cell.inside);
     if (cell.known) return count(dp, pieces, chart.to_chart(point_at(cell.patch, 0.5, 0.5)), cell.inside);
     if (pieces.count() > kMaxPieces && cell.depth < kMaxDepth / 2) return false;
@@ -564,6 +579,7 @@ class PatchFace {
   BezierPatch root_;
   CellFitter fitter_;
   double fitted_position_ = 0, fitted_normal_ = 0;  ///< what an interpolated patch is off already
+  double worst_position_ = 0, worst_normal_ = 0;    ///< of all patches
   double allowed_ = 0;                              ///< the tolerance where the present cell is
   int made_ = 0;
 };
@@ -579,6 +595,17 @@ void drop_slivers(std::vector<FittedPatch>& patches, const Box2& box) {
     std::erase_if(patches, [&](const FittedPatch& p) { return !is_wide(p); });
 }
 
+/// Of what is allowed: what carrying on a patch over a thin span may be off.
+constexpr double kThinShare = 0.2, kThinNormals = 0.1;
+ThinSpanTolerances thin_span_tolerances(const PatchFaceInput& in, const std::vector<FittedPatch>& patches) {
+  Box3 box;
+  for (const FittedPatch& p : patches) {
+    const Box3 one = poles_box(p.patch);
+    box.add(one.lo), box.add(one.hi);
+  }
+  return {in.tolerance.at(box) * kTrimTolerance * kThinShare, in.normal_tolerance * kThinNormals};
+}
+
 /// The surface in Bézier form: exactly, or interpolated where it is not rational.
 std::vector<FittedPatch> patches_of(const PatchFaceInput& in, PatchFaceResult& result) {
   const Surface& surface = in.part.surfaces[in.face.surface];
@@ -590,6 +617,8 @@ std::vector<FittedPatch> patches_of(const PatchFaceInput& in, PatchFaceResult& r
     patches.push_back(
         {std::move(patch), stand_in ? stand_in->deviation : 0, stand_in ? stand_in->normal_deviation : 0});
   drop_slivers(patches, in.boundary.uv_box);
+  if (patches.size() > 1 && !stand_in && std::holds_alternative<BsplineSurface>(surface.geometry))
+    absorb_thin_spans(patches, thin_span_tolerances(in, patches));
   if (!patches.empty()) return patches;
   result.rational = false;
   patches = fitted_patches(surface, in.boundary.uv_box, in.tolerance, in.normal_tolerance);
@@ -636,6 +665,7 @@ PatchFaceResult make_patch_face(const PatchFaceInput& in, PartDps& out) {
   // In parallel over groups of patches; joined in their order, so that the threads' number shows nowhere.
   parallel_for(tasks, [&](std::size_t t) {
     PatchFace face(in, seams, grid, parts[t]);
+    face.note_errors(patches);
     if (!tiles.empty())
       face.divide_block(patches, tiles[t], face.all_arcs());
     else

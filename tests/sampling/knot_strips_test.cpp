@@ -9,6 +9,7 @@
 
 #include "../../sampling/bezier_cell.h"
 #include "../../sampling/merged_patches.h"
+#include "../../sampling/thin_spans.h"
 
 namespace dupin {
 namespace {
@@ -147,6 +148,40 @@ TEST(MergedPatches, NothingOfABlockOrItsMarginIsFartherOffThanItsBound) {
     for (double margin : merged->margin) EXPECT_GE(margin, kMergedMargin * (1 - 1e-9));
     EXPECT_FALSE(merged_patch(grid, block, 1e-5)) << "off by more than that";
   }
+}
+
+/// Two cubic patches and a thin one between them, of one polynomial or bent off it.
+std::vector<FittedPatch> with_thin_span(double bend) {
+  const auto at = [&](double u, double v) {
+    return Vec3{u, v, 0.1 * u * u + 0.05 * u * v * v + (u > 1 ? bend * (u - 1) : 0)};
+  };
+  std::vector<FittedPatch> patches;
+  for (const auto& [lo, hi] : {std::pair{0.0, 1.0}, std::pair{1.0, 1.001}, std::pair{1.001, 2.0}})
+    patches.push_back({interpolating_patch(
+        [&, a = lo, b = hi](Vec2 uv) {
+          const double u = std::clamp(uv.x, a + 1e-15, b);
+          return at(u, uv.y);
+        },
+        {{lo, 0}, {hi, 1}})});
+  return patches;
+}
+
+TEST(ThinSpans, AreTakenInOnlyWhereTheNeighbourCarriedOnIsTheSurface) {
+  std::vector<FittedPatch> same = with_thin_span(0);
+  absorb_thin_spans(same, {1e-6, 1e-4});
+  ASSERT_EQ(same.size(), 2u);
+  EXPECT_LE(same[0].position_error, 1e-9);
+  const double end = same[0].patch.domain.hi.x, start = same[1].patch.domain.lo.x;
+  EXPECT_EQ(end, start);
+  for (const FittedPatch& p : same)
+    for (double s : {0.0, 0.5, 0.9995, 1.0}) {
+      const double u = patch_to_surface_u(p.patch, s);
+      EXPECT_NEAR(point_at(p.patch, s, 0.5).z, 0.1 * u * u + 0.0125 * u, 1e-9);
+    }
+  std::vector<FittedPatch> bent = with_thin_span(0.01);  // both neighbours turn by more than is allowed
+  bent[2].patch = bent[0].patch, bent[2].patch.domain = {{1.001, 0}, {2.001, 1}};
+  absorb_thin_spans(bent, {1e-6, 1e-4});
+  EXPECT_EQ(bent.size(), 3u);
 }
 
 }  // namespace
