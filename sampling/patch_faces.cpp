@@ -509,11 +509,9 @@ class PatchFace {
     for (const FaceArc* arc : cell.arcs)
       if (chart.add(*arc, pieces)) off = std::max(off, arc->bound);
     // Where the face ends, by as much as its edge is off, points may lie beyond the surface itself.
-    // The arcs' tolerance is their own place's, which may be farther from the camera: then the cell makes up
-    // for it.
+    // The arcs' tolerance is that of their own place, which may be farther from the camera than the cell's.
     const double both = std::hypot(dp.bound, off);
-    if (both > allowed_ && off <= kBesideEdges * allowed_ && !dp.speck && cell.depth < kMaxDepth / 2)
-      return false;
+    if (both > allowed_ && !dp.speck && cell.depth < kMaxDepth / 2) return false;
     dp.bound = both;
     if (cell.known && pieces.empty()) return count(dp, {}, {}, cell.inside);
     if (cell.known) return count(dp, pieces, chart.to_chart(point_at(cell.patch, 0.5, 0.5)), cell.inside);
