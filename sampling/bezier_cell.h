@@ -57,7 +57,6 @@ struct CellRequest {
   /// What the surface may differ by from the patch carried on into its margins: across knots, over the grown
   /// cell.
   Remainder beyond;
-  double room = 0;  ///< a cell that is thinner than this may be grown by as much
 };
 
 /// Fits and certifies in one go, reusing its buffers from cell to cell.

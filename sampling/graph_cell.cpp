@@ -162,7 +162,7 @@ class GraphFitter {
     return model() && place();
   }
   double most_margin(double half_width) const {
-    return std::max(kMostMargin, std::min(kMostThinMargin, request_.room / (2 * half_width)));
+    return std::max(kMostMargin, std::min(kMostThinMargin, request_.tolerance / (2 * half_width)));
   }
   /// What the sides of a piece take of the room there is.
   double bent(int n, int m) const {

@@ -19,7 +19,7 @@
 namespace dupin {
 
 /// What edges and the cells at them are held to, as parts of the tolerance that holds for faces.
-inline constexpr double kEdgeTolerance = 0.01, kTrimTolerance = 0.03;
+inline constexpr double kEdgeTolerance = 0.02, kTrimTolerance = 0.02;
 
 /// How far a face reaches over an arc: at its first point, its middle and its last, in the edge's direction.
 struct ArcReach {

@@ -46,7 +46,7 @@ struct Cell {
 };
 /// ∂F/∂z where a footprint reaches over its grown cell; and by how many times the quadric's own bend the
 /// normals may turn there, the drawn one and the surface's.
-constexpr double kLeastSheetBeyond = 0.25, kBendsBeyond = 3;
+constexpr double kLeastSheetBeyond = 0.25, kBendsBeyond = 6;
 /// A cut that leaves more than this of what asked for it went in the wrong direction.
 constexpr double kNoProgress = 0.7;
 
@@ -169,7 +169,7 @@ class PatchFace {
     const bool speck =
         box.diagonal() <= allowed * (cell.arcs.empty() ? 1 : kBesideEdges) || cell.depth >= kMaxDepth;
     if (box.diagonal() <= kSpeck * allowed) return emit_speck(cell, uv, box, {});
-    CellRequest request{tolerance - fitted_position_, in_.normal_tolerance - fitted_normal_, {}, {}, allowed};
+    CellRequest request{tolerance - fitted_position_, in_.normal_tolerance - fitted_normal_, {}, {}};
     CellFit fit = fit_cell(cell.patch, request);
     if (fit.valid && emit(cell, uv, request, fit)) return;
     if (fit.valid && widen_margins(fit)) {
@@ -304,8 +304,7 @@ class PatchFace {
     // The fit's parameters run over [−1,1], margins included.
     const double half = (1 + 2 * kMergedMargin) / 2;
     const Remainder& d = merged->beyond;
-    const CellRequest request{
-        tolerance, in_.normal_tolerance, {}, {d.value, d.ds * half, d.dt * half}, allowed};
+    const CellRequest request{tolerance, in_.normal_tolerance, {}, {d.value, d.ds * half, d.dt * half}};
     CellFit fit = fit_cell(cell.patch, request);
     if (!fit.valid || !make_footprint(uv, fit) || !add_overshoot(request, fit)) return false;
     const double gradient[2] = {fit.gradient_t, fit.gradient_s};

@@ -98,8 +98,8 @@ Flow flow(const BezierPatch& p, bool u) {
   return f;
 }
 
-/// By how much normals of `thin` and of a patch that differs by `d` may differ: (|Ds| |St| + |Ss| |Dt|) / |Ss ×
-/// St|, twice, for normals of both.
+/// By how much normals of `thin` and of a patch that differs by `d` may differ: (|Ds| |St| + |Ss| |Dt|) / |Ss
+/// × St|, twice, for normals of both.
 double turned(const BezierPatch& thin, const Difference& d, bool u) {
   const Flow over = flow(thin, u), along = flow(thin, !u);
   const double sine = length(cross(over.mean, along.mean)) - over.turn - along.turn;
@@ -129,8 +129,8 @@ class Grid {
       const double before = i > 0 ? width_of(spans_[i - 1]) : 0,
                    after = i + 1 < spans_.size() ? width_of(spans_[i + 1]) : 0;
       const bool back = before >= after;
-      const bool done = kMuchWider * own <= std::max(before, after) &&
-                        take_in(spans_[i], spans_[back ? i - 1 : i + 1], u);
+      const bool done =
+          kMuchWider * own <= std::max(before, after) && take_in(spans_[i], spans_[back ? i - 1 : i + 1], u);
       if (!done) {
         ++i;
         continue;
@@ -147,8 +147,8 @@ class Grid {
     const std::vector<double> begin = starts(patches_, u);
     spans_.assign(begin.size(), {});
     for (std::size_t i = 0; i < patches_.size(); ++i)
-      spans_[static_cast<std::size_t>(std::lower_bound(begin.begin(), begin.end(), start(patches_[i].patch, u)) -
-                                      begin.begin())]
+      spans_[static_cast<std::size_t>(
+                 std::lower_bound(begin.begin(), begin.end(), start(patches_[i].patch, u)) - begin.begin())]
           .push_back(i);
     for (Span& s : spans_)
       std::sort(s.begin(), s.end(), [&](std::size_t a, std::size_t b) {
