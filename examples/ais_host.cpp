@@ -1,5 +1,5 @@
-// Open CASCADE's viewer (AIS), in an X window: a red sheet that it tessellates and draws as always, and an interactive object that
-// is drawn by the library instead.
+// Open CASCADE's viewer (AIS), in an X window: a red sheet that it tessellates and draws as always, and an
+// interactive object that is drawn by the library instead.
 //
 //   ais_host MODEL [--picture FILE.png] [--alone]
 #include "host_common.h"
@@ -50,7 +50,8 @@ class ExactElement final : public OpenGl_Element {
     const Handle(Graphic3d_Camera) camera = workspace->View()->Camera();
     const Graphic3d_Mat4d& to_eye = camera->OrientationMatrix();
     const Graphic3d_Mat4d& projection = camera->ProjectionMatrix();
-    for (std::size_t i = 0; i < 16; ++i) view.view[i] = to_eye.GetData()[i], view.projection[i] = projection.GetData()[i];
+    for (std::size_t i = 0; i < 16; ++i)
+      view.view[i] = to_eye.GetData()[i], view.projection[i] = projection.GetData()[i];
     const Standard_Integer* port = workspace->GetGlContext()->Viewport();
     view.viewport = {port[0], port[1], port[2], port[3]};
     status_ = example::draw(*scene_, view, {}, function);
@@ -86,7 +87,9 @@ class ExactObject final : public AIS_InteractiveObject {
   ExactElement* element_ = nullptr;
 };
 
-gp_Pnt point(const dupin::Vec3& v) { return {v.x, v.y, v.z}; }
+gp_Pnt point(const dupin::Vec3& v) {
+  return {v.x, v.y, v.z};
+}
 
 void place_camera(const Handle(V3d_View) & view, const example::Look& look) {
   const Handle(Graphic3d_Camera) camera = view->Camera();
@@ -147,7 +150,8 @@ int main(int argc, char** argv) {
   view->Redraw();
   if (!exact->status().ok()) return example::fail(exact->status().message);
   example::print_camera(look, kWidth, kHeight);
-  if (arguments.picture && !save(view, arguments.picture)) return example::fail("no picture could be written");
+  if (arguments.picture && !save(view, arguments.picture))
+    return example::fail("no picture could be written");
   context->RemoveAll(Standard_False);
   view->Remove();
   return 0;

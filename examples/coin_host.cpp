@@ -1,5 +1,6 @@
-// A Coin scene (Open Inventor, FreeCAD's scene graph) in a GLFW window: a red sheet, and a callback node in which the library
-// draws a CAD model with the camera, model matrix and viewport that Coin's traversal has there.
+// A Coin scene (Open Inventor, FreeCAD's scene graph) in a GLFW window: a red sheet, and a callback node in
+// which the library draws a CAD model with the camera, model matrix and viewport that Coin's traversal has
+// there.
 //
 //   coin_host MODEL [--frames N] [--picture FILE.png] [--alone]
 #include <GLFW/glfw3.h>
@@ -33,7 +34,8 @@ class ExactShape {
 
   /// For SoCallback::setCallback.
   static void traverse(void* self, SoAction* action) {
-    if (action->isOfType(SoGLRenderAction::getClassTypeId())) static_cast<ExactShape*>(self)->draw(action->getState());
+    if (action->isOfType(SoGLRenderAction::getClassTypeId()))
+      static_cast<ExactShape*>(self)->draw(action->getState());
   }
   /// With the context current, before it goes.
   void forget_context() { scene_.reset(); }
@@ -43,10 +45,15 @@ class ExactShape {
   void draw(SoState* state) {
     SoCacheElement::invalidate(state);  // never part of a display list
     const cc_glglue* glue = cc_glglue_instance(SoGLCacheContextElement::get(state));
-    const dupin::GetProcAddress loader = [glue](const char* name) { return cc_glglue_getprocaddress(glue, name); };
+    const dupin::GetProcAddress loader = [glue](const char* name) {
+      return cc_glglue_getprocaddress(glue, name);
+    };
     if (!scene_) {
       auto made = dupin::HostScene::create(loader);
-      if (!made) { status_ = made.status(); return; }
+      if (!made) {
+        status_ = made.status();
+        return;
+      }
       scene_ = std::move(*made);
       (void)scene_->add(model_);
     }
@@ -74,7 +81,9 @@ class ExactShape {
   dupin::Status status_;
 };
 
-SbVec3f coin(const dupin::Vec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+SbVec3f coin(const dupin::Vec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
 
 SoSeparator* scene_of(const dupin::Box3& box, const example::Look& look, ExactShape& shape, bool sheet) {
   auto* root = new SoSeparator;
@@ -114,7 +123,8 @@ bool save(const char* path) {
 
 int main(int argc, char** argv) {
   const example::Arguments arguments = example::arguments(argc, argv);
-  if (!arguments.model) return example::fail("usage: coin_host MODEL [--frames N] [--picture FILE.png] [--alone]");
+  if (!arguments.model)
+    return example::fail("usage: coin_host MODEL [--frames N] [--picture FILE.png] [--alone]");
   if (!glfwInit()) return example::fail("no display");
   GLFWwindow* window = glfwCreateWindow(kWidth, kHeight, "Dupin in Coin", nullptr, nullptr);
   if (!window) return example::fail("no window with OpenGL");
@@ -140,7 +150,8 @@ int main(int argc, char** argv) {
       if (!shape.status().ok()) code = example::fail(shape.status().message);
     }
     example::print_camera(look, kWidth, kHeight);
-    if (code == 0 && arguments.picture && !save(arguments.picture)) code = example::fail("no picture could be written");
+    if (code == 0 && arguments.picture && !save(arguments.picture))
+      code = example::fail("no picture could be written");
   }
   root->unref();
   shape.forget_context();

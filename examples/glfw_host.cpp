@@ -1,17 +1,20 @@
-// A window made with GLFW: a program with a compatibility context and fixed-function drawing of its own into the window's
-// framebuffer, among which the library draws a CAD model that is read while the window is already there.
+// A window made with GLFW: a program with a compatibility context and fixed-function drawing of its own into
+// the window's framebuffer, among which the library draws a CAD model that is read while the window is
+// already there.
 //
 //   glfw_host MODEL [--frames N] [--picture FILE.png] [--alone]
 //
-// Turns the model until the window is closed, or for N frames. The host's red sheet goes through the model's middle: each hides a
-// part of the other. --alone: without it.
+// Turns the model until the window is closed, or for N frames. The host's red sheet goes through the model's
+// middle: each hides a part of the other. --alone: without it.
 #include <GLFW/glfw3.h>
 
 #include "host_common.h"
 
 namespace {
 
-void* function(const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); }
+void* function(const char* name) {
+  return reinterpret_cast<void*>(glfwGetProcAddress(name));
+}
 
 /// A red upright sheet through the middle of the box.
 void draw_own(const dupin::Box3& box, const dupin::HostView& view, bool sheet) {
@@ -41,7 +44,8 @@ int show(GLFWwindow* window, const example::Arguments& arguments) {
   const auto job = dupin::LoadJob::start(arguments.model, {}, {});
   auto scene = dupin::HostScene::create(function);
   if (!scene) return example::fail(scene.status().message);
-  for (int drawn = 0; !glfwWindowShouldClose(window) && (arguments.frames == 0 || drawn < arguments.frames);) {
+  for (int drawn = 0;
+       !glfwWindowShouldClose(window) && (arguments.frames == 0 || drawn < arguments.frames);) {
     glfwPollEvents();
     if ((*scene)->objects().empty() && job->done()) {
       const auto prepared = job->result();
@@ -58,7 +62,8 @@ int show(GLFWwindow* window, const example::Arguments& arguments) {
       if (!status.ok()) return example::fail(status.message);
       if (drawn == arguments.frames) {
         example::print_camera(look, width, height);
-        if (arguments.picture && !save(arguments.picture, width, height)) return example::fail("no picture could be written");
+        if (arguments.picture && !save(arguments.picture, width, height))
+          return example::fail("no picture could be written");
       }
     }
     glfwSwapBuffers(window);
@@ -70,7 +75,8 @@ int show(GLFWwindow* window, const example::Arguments& arguments) {
 
 int main(int argc, char** argv) {
   const example::Arguments arguments = example::arguments(argc, argv);
-  if (!arguments.model) return example::fail("usage: glfw_host MODEL [--frames N] [--picture FILE.png] [--alone]");
+  if (!arguments.model)
+    return example::fail("usage: glfw_host MODEL [--frames N] [--picture FILE.png] [--alone]");
   if (!glfwInit()) return example::fail("no display");
   GLFWwindow* window = glfwCreateWindow(640, 480, "Dupin in GLFW", nullptr, nullptr);
   if (!window) return example::fail("no window with OpenGL");

@@ -1,4 +1,5 @@
-// What the windows among the examples have in common: arguments, a camera, a red sheet's place, a picture file.
+// What the windows among the examples have in common: arguments, a camera, a red sheet's place, a picture
+// file.
 #ifndef DUPIN_EXAMPLES_HOST_COMMON_H
 #define DUPIN_EXAMPLES_HOST_COMMON_H
 
@@ -66,23 +67,44 @@ inline Look look_at(const dupin::Box3& box, double angle_radians) {
 
 /// As OpenGL has them.
 inline dupin::HostView host_view(const Look& look, int width, int height) {
-  const dupin::Vec3 f = normalized(look.target - look.eye), r = normalized(cross(f, look.up)), u = cross(r, f);
+  const dupin::Vec3 f = normalized(look.target - look.eye), r = normalized(cross(f, look.up)),
+                    u = cross(r, f);
   const double scale = 1 / std::tan(look.fov_degrees * M_PI / 360), n = look.near, far = look.far;
   dupin::HostView view;
-  view.view = {r.x, u.x, -f.x, 0, r.y, u.y, -f.y, 0, r.z, u.z, -f.z, 0, -dot(r, look.eye), -dot(u, look.eye), dot(f, look.eye), 1};
-  view.projection = {scale * height / width, 0, 0, 0, 0, scale, 0, 0, 0, 0, (far + n) / (n - far), -1, 0, 0, 2 * far * n / (n - far), 0};
+  view.view = {r.x,
+               u.x,
+               -f.x,
+               0,
+               r.y,
+               u.y,
+               -f.y,
+               0,
+               r.z,
+               u.z,
+               -f.z,
+               0,
+               -dot(r, look.eye),
+               -dot(u, look.eye),
+               dot(f, look.eye),
+               1};
+  view.projection = {scale * height / width,  0, 0, 0, 0, scale, 0, 0, 0, 0, (far + n) / (n - far), -1, 0, 0,
+                     2 * far * n / (n - far), 0};
   view.viewport = {0, 0, width, height};
   return view;
 }
 
 /// As arguments of `dupin render`.
 inline void print_camera(const Look& look, int width, int height) {
-  std::printf("camera: --eye %.17g,%.17g,%.17g --target %.17g,%.17g,%.17g --up-vector 0,0,1 --fov %.17g --resolution %d,%d\n",
-              look.eye.x, look.eye.y, look.eye.z, look.target.x, look.target.y, look.target.z, look.fov_degrees, width, height);
+  std::printf(
+      "camera: --eye %.17g,%.17g,%.17g --target %.17g,%.17g,%.17g --up-vector 0,0,1 --fov %.17g --resolution "
+      "%d,%d\n",
+      look.eye.x, look.eye.y, look.eye.z, look.target.x, look.target.y, look.target.z, look.fov_degrees,
+      width, height);
 }
 
 /// Three or four bytes a pixel, bottom row first.
-inline bool write(const char* path, const std::vector<unsigned char>& pixels, int width, int height, int channels) {
+inline bool write(const char* path, const std::vector<unsigned char>& pixels, int width, int height,
+                  int channels) {
   dupin::Image8 image;
   image.width = width, image.height = height, image.channels = 3;
   image.values.resize(static_cast<std::size_t>(3 * width * height));
@@ -95,7 +117,8 @@ inline bool write(const char* path, const std::vector<unsigned char>& pixels, in
 }
 
 /// Draws; where the examples are built with the tests, says what of the context's state changed by that.
-inline dupin::Status draw(dupin::HostScene& scene, const dupin::HostView& view, const dupin::DrawOptions& options,
+inline dupin::Status draw(dupin::HostScene& scene, const dupin::HostView& view,
+                          const dupin::DrawOptions& options,
                           [[maybe_unused]] const dupin::GetProcAddress& loader) {
 #ifdef DUPIN_HOST_CHECKS
   struct Current final : dupin::Context {
@@ -109,11 +132,13 @@ inline dupin::Status draw(dupin::HostScene& scene, const dupin::HostView& view, 
   using namespace dupin::testing;
   while (gl_error(context)) std::printf("the host itself left an OpenGL error\n");
   const GlState before = gl_state(context);
-  while (gl_error(context)) {}  // what an older context could not be asked for
+  while (gl_error(context)) {
+  }  // what an older context could not be asked for
   const dupin::Status drawn = scene.draw(view, options);
   if (gl_error(context)) std::printf("an OpenGL error is left\n");
   const GlState after = gl_state(context);
-  while (gl_error(context)) {}
+  while (gl_error(context)) {
+  }
   std::printf("state: %zu values, changed: %s\n", before.size(), differences(before, after).c_str());
   return drawn;
 #else
@@ -121,7 +146,9 @@ inline dupin::Status draw(dupin::HostScene& scene, const dupin::HostView& view, 
 #endif
 }
 
-inline dupin::GetProcAddress loader_of(void* (*get)(const char*)) { return get; }
+inline dupin::GetProcAddress loader_of(void* (*get)(const char*)) {
+  return get;
+}
 
 }  // namespace example
 
