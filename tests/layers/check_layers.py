@@ -26,7 +26,7 @@ for above in ("bench", "examples", "integrations", "samples"):
     LAYERS[above] = LIBRARY + ["exact", "app"]
 LAYERS["tests"] = LIBRARY + ["exact", "app", "bench"]
 
-OCCT_ALLOWED = {"cad_import", "samples", "tests", "bench"}
+OCCT_ALLOWED = {"cad_import", "samples", "examples", "tests", "bench"}
 GL_ALLOWED = {"render", "examples", "integrations", "tests"}
 # Open CASCADE's headers are Package_Class.hxx (or Package.hxx); nothing else here uses that ending.
 OCCT = re.compile(r"\.(hxx|lxx)$")
