@@ -14,10 +14,6 @@
 #include "../host/load_job.h"
 #include "../render/image.h"
 
-#ifdef DUPIN_HOST_CHECKS
-#include "../tests/render/host_state.h"
-#endif
-
 namespace example {
 
 struct Arguments {
@@ -116,39 +112,16 @@ inline bool write(const char* path, const std::vector<unsigned char>& pixels, in
   return dupin::write_png(path, image).ok();
 }
 
-/// Draws; where the examples are built with the tests, says what of the context's state changed by that.
-inline dupin::Status draw(dupin::HostScene& scene, const dupin::HostView& view,
-                          const dupin::DrawOptions& options,
-                          [[maybe_unused]] const dupin::GetProcAddress& loader) {
 #ifdef DUPIN_HOST_CHECKS
-  struct Current final : dupin::Context {
-    explicit Current(const dupin::GetProcAddress& get) : get_(get) {}
-    dupin::Status make_current() override { return {}; }
-    void release() override {}
-    void* proc_address(const char* name) const override { return get_(name); }
-    std::string name() const override { return "the host's"; }
-    const dupin::GetProcAddress& get_;
-  } context(loader);
-  using namespace dupin::testing;
-  while (gl_error(context)) std::printf("the host itself left an OpenGL error\n");
-  const GlState before = gl_state(context);
-  while (gl_error(context)) {
-  }  // what an older context could not be asked for
-  const dupin::Status drawn = scene.draw(view, options);
-  if (gl_error(context)) std::printf("an OpenGL error is left\n");
-  const GlState after = gl_state(context);
-  while (gl_error(context)) {
-  }
-  std::printf("state: %zu values, changed: %s\n", before.size(), differences(before, after).c_str());
-  return drawn;
+/// Draws, and says what of the context's state changed by that: tests/host/checked_draw.cpp.
+dupin::Status draw(dupin::HostScene& scene, const dupin::HostView& view, const dupin::DrawOptions& options,
+                   const dupin::GetProcAddress& loader);
 #else
+inline dupin::Status draw(dupin::HostScene& scene, const dupin::HostView& view,
+                          const dupin::DrawOptions& options, const dupin::GetProcAddress&) {
   return scene.draw(view, options);
+}
 #endif
-}
-
-inline dupin::GetProcAddress loader_of(void* (*get)(const char*)) {
-  return get;
-}
 
 }  // namespace example
 
