@@ -5,6 +5,7 @@
 #include "renderer_impl.h"
 
 namespace dupin {
+
 Result<GLuint> Renderer::Impl::program(const std::string& wanted, const ProgramText& text) {
   // Whatever draws proxies is cut by the sections.
   const bool cut = !sections_.empty() && !text.vertex.empty() &&
