@@ -3,15 +3,18 @@
 #include <bit>
 #include <limits>
 
+#include "tile_heights.h"
+#include "tile_proxy.h"
+
 namespace dupin {
 namespace {
 
 /// A cell, as a tile, costs about as much as the tests of so many pixels: a DP that is smaller than this many
 /// a cell is drawn whole.
 constexpr double kPixelsPerCell = 60;
-/// Tiles are cut until the surface bends by no more than this many pixels within one, or they are this small.
-constexpr double kMostBendPx = 3, kSmallestPx = 12;
-constexpr int kMostCuts = 24;
+/// Tiles are cut in two until they are no thicker than this many pixels, or no larger, or cut so often.
+constexpr double kMostBendPx = 8, kSmallestCut = 150;
+constexpr int kMostCuts = 12, kMostCutsNear = 5;
 
 std::uint32_t word(double v) {
   return std::bit_cast<std::uint32_t>(static_cast<float>(v));
@@ -20,58 +23,9 @@ Texel texel(double x, double y, double z, double w) {
   return {word(x), word(y), word(z), word(w)};
 }
 
-struct Interval {
-  double lo, hi;
-  bool empty() const { return !(lo <= hi); }
-};
-Interval operator+(const Interval& a, const Interval& b) {
-  return {a.lo + b.lo, a.hi + b.hi};
-}
-Interval times(const Interval& a, double k) {
-  return k < 0 ? Interval{a.hi * k, a.lo * k} : Interval{a.lo * k, a.hi * k};
-}
-Interval times(const Interval& a, const Interval& b) {
-  const auto [lo, hi] = std::minmax({a.lo * b.lo, a.lo * b.hi, a.hi * b.lo, a.hi * b.hi});
-  return {lo, hi};
-}
-/// Of x², x in the interval.
-Interval square(const Interval& a) {
-  const double l = a.lo * a.lo, h = a.hi * a.hi;
-  return {a.lo <= 0 && a.hi >= 0 ? 0 : std::min(l, h), std::max(l, h)};
-}
-Interval common(const Interval& a, const Interval& b) {
-  return {std::max(a.lo, b.lo), std::min(a.hi, b.hi)};
-}
-
-/// Where F = 0 lies above a rectangle of (x, y), within the DP's ends: up to two intervals of z. From
-///     ½ c z² − p z + q = 0,  p = 1 − a x − b y,  q = ½ (λu x² + λv y²).
-struct Heights {
-  Interval z[2];
-  int count = 0;
-};
-Heights heights(const QuadricDp& dp, const Box2& box) {
-  const Interval whole{dp.z_lo, dp.z_hi};
-  const Interval x{box.lo.x, box.hi.x}, y{box.lo.y, box.hi.y};
-  const Interval p = Interval{1, 1} + times(x, -dp.a) + times(y, -dp.b);
-  const Interval q = times(square(x), dp.lambda_u / 2) + times(square(y), dp.lambda_v / 2);
-  if (!(p.lo > 0)) return {{whole, {}}, 1};
-  const Interval d = square(p) + times(q, -2 * dp.c);
-  if (d.hi < 0) return {};
-  const Interval root{std::sqrt(std::max(0.0, d.lo)), std::sqrt(d.hi)}, sum = p + root;
-  const double slack = 2e-6 * (box.size().x + box.size().y + dp.z_hi - dp.z_lo);
-  Heights h;
-  const auto add = [&](Interval z) {
-    z = common({z.lo - slack, z.hi + slack}, whole);
-    if (z.empty()) return;
-    if (h.count == 1 && z.lo <= h.z[0].hi && h.z[0].lo <= z.hi) {
-      h.z[0] = {std::min(z.lo, h.z[0].lo), std::max(z.hi, h.z[0].hi)};
-    } else {
-      h.z[h.count++] = z;
-    }
-  };
-  add(times(times(q, 2), {1 / sum.hi, 1 / sum.lo}));
-  if (dp.c != 0) add(times(sum, 1 / dp.c));
-  return h;
+/// The pixel at this place from the picture's middle, or the nearest in the picture.
+double whole_pixel(double at, int size) {
+  return std::clamp(std::floor(at + size / 2.0), 0.0, std::min(size, 65536) - 1.0);
 }
 
 using Corners = std::array<Vec2, 4>;
@@ -89,15 +43,6 @@ Corners part_of(const Corners& c, double s0, double s1, double t0, double t1) {
   return {at(s0, t0), at(s1, t0), at(s1, t1), at(s0, t1)};
 }
 
-/// Into how many parts a way along the surface is cut.
-int cuts(const QuadricDp& dp, Vec2 way, double px_per_unit) {
-  const double curved = std::abs(dp.lambda_u * way.x * way.x + dp.lambda_v * way.y * way.y),
-               px = length(way) * px_per_unit;
-  // The bend of a part is an eighth of curved / n², in the DP's unit.
-  const double n = std::min(std::sqrt(curved * px_per_unit / (8 * kMostBendPx)), px / kSmallestPx);
-  return static_cast<int>(std::clamp(std::ceil(n), 1.0, static_cast<double>(kMostCuts)));
-}
-
 /// Normals of a tile, in the DP's frame, as seen from an eye or a direction there.
 struct LocalView {
   bool perspective;
@@ -106,12 +51,11 @@ struct LocalView {
 
 enum class Facing { away, towards, unknown };
 
-Facing facing(const QuadricDp& dp, const Corners& corners, const Interval& z, const LocalView& view) {
-  std::array<Vec3, 8> points;
+/// Of the surface in the hull of the points.
+Facing facing(const QuadricDp& dp, const std::array<Vec3, 8>& points, const LocalView& view) {
   std::array<Vec3, 8> normals;
   Vec3 sum, middle;
   for (std::size_t i = 0; i < 8; ++i) {
-    points[i] = {corners[i % 4].x, corners[i % 4].y, i < 4 ? z.lo : z.hi};
     normals[i] = normalized(quadric_gradient(dp, points[i]));
     sum += normals[i];
     middle += points[i] * 0.125;
@@ -139,7 +83,11 @@ Facing facing(const QuadricDp& dp, const Corners& corners, const Interval& z, co
 class DpTiles {
  public:
   DpTiles(const SeenDp& seen, const TileOptions& options, Tiles& tiles)
-      : seen_(seen), dp_(seen.dp->dp), options_(options), tiles_(tiles) {}
+      : seen_(seen), dp_(seen.dp->dp), options_(options), tiles_(tiles) {
+    if (!dp_.planar)
+      picture_ = PictureOfDp(*seen.camera, seen.dp->origin, dp_.u, dp_.v, dp_.n(),
+                             {options.width / 2.0, options.height / 2.0});
+  }
 
   void add() {
     if (whole()) {
@@ -169,37 +117,65 @@ class DpTiles {
   }
 
   void add_cell(const RegionCell& cell) {
-    std::uint32_t kind = kind_ | (cell.conic ? kConicTile : 0);
-    if (dp_.planar) return emit(cell, cell.corners, {0, 0}, kind, false);
-    kind |= kCurvedTile;
-    const double px = seen_.px_per_unit;
-    const Corners& c = cell.corners;
-    int across = 1, down = 1;
-    if (std::isfinite(px) && !(kind & kPiecesTile)) {
-      across = std::max(cuts(dp_, c[1] - c[0], px), cuts(dp_, c[2] - c[3], px));
-      down = std::max(cuts(dp_, c[3] - c[0], px), cuts(dp_, c[2] - c[1], px));
-    }
-    if (across * down == 1) return add_curved(cell, c, kind, false);
-    for (int j = 0; j < down; ++j)
-      for (int i = 0; i < across; ++i)
-        add_curved(cell,
-                   part_of(c, static_cast<double>(i) / across, (i + 1.0) / across,
-                           static_cast<double>(j) / down, (j + 1.0) / down),
-                   kind, true);
+    const std::uint32_t kind = kind_ | (cell.conic ? kConicTile : 0);
+    if (dp_.planar) return emit(cell, cell.corners, {0, 0}, kind, false, nullptr);
+    add_curved(cell, cell.corners, {dp_.z_lo, dp_.z_hi}, kind | kCurvedTile, 0);
   }
 
-  void add_curved(const RegionCell& cell, const Corners& corners, std::uint32_t kind, bool cut) {
-    const bool own = cut || !seen_.dp->cells.empty();
-    const Heights h = own ? heights(dp_, box_of(corners)) : Heights{{{dp_.z_lo, dp_.z_hi}, {}}, 1};
+  /// `ends` is the tile's own part of the DP's z: more than where the surface is, as a point within rounding
+  /// of the tile's sides may lie above or below that.
+  void add_curved(const RegionCell& cell, const Corners& corners, const Interval& ends, std::uint32_t kind,
+                  int cuts) {
+    const Box2 box = box_of(corners);
+    const Heights h = heights(dp_, box, ends);
+    const double between =
+        h.count == 2 ? (std::min(h.z[0].hi, h.z[1].hi) + std::max(h.z[0].lo, h.z[1].lo)) / 2 : 0;
     for (int k = 0; k < h.count; ++k) {
+      Interval band = ends;
+      if (h.count == 2) (h.z[k].hi < between ? band.hi : band.lo) = between;
+      const Hull hull = hull_of(dp_, corners, box, h.z[k]);
       Facing side = seen_.towards ? Facing::towards : seen_.away ? Facing::away : Facing::unknown;
-      if (own && side == Facing::unknown) side = facing(dp_, corners, h.z[k], local_view());
+      if (side == Facing::unknown) side = facing(dp_, hull.points, local_view());
       const bool solid = seen_.camera->cull_turned_away;
       if (solid && side == Facing::away) continue;
+      TileProxy proxy;
+      const auto seen = picture_.around(hull.points, proxy);
+      if (seen == PictureOfDp::Seen::nothing) continue;
+      const bool near = seen == PictureOfDp::Seen::near_eye;
+      if (!(kind & kPiecesTile) && cuts < (near ? kMostCutsNear : kMostCuts) &&
+          (near || worth_a_cut(hull, proxy))) {
+        cut(cell, corners, band, (h.z[k].lo + h.z[k].hi) / 2, hull, kind, cuts + 1);
+        continue;
+      }
       std::uint32_t tile = kind;
       if (solid || side != Facing::unknown) tile |= kOneRootTile;
-      if (near_eye(corners, h.z[k])) tile |= kPrismTile;
-      emit(cell, corners, h.z[k], tile, side == Facing::away);
+      if (near) tile |= kPrismTile;
+      emit(cell, corners, band, tile, side == Facing::away, near ? nullptr : &proxy);
+    }
+  }
+
+  bool worth_a_cut(const Hull& hull, const TileProxy& proxy) const {
+    return proxy.area > kSmallestCut && hull.thickness * picture_.px_per_unit(hull.points) > kMostBendPx;
+  }
+
+  /// In two, across the way that bends most.
+  void cut(const RegionCell& cell, const Corners& c, const Interval& z, double middle, const Hull& hull,
+           std::uint32_t kind, int cuts) {
+    const auto bend = [&](Vec2 way) {
+      return std::abs(dp_.lambda_u * way.x * way.x + dp_.lambda_v * way.y * way.y);
+    };
+    const Vec2 across = (c[1] - c[0] + c[2] - c[3]) * 0.5, down = (c[3] - c[0] + c[2] - c[1]) * 0.5;
+    const bool is_across =
+        bend(across) != bend(down) ? bend(across) > bend(down) : length(across) > length(down);
+    if (!hull.slanting && hull.points[4].z - hull.points[0].z > length(is_across ? across : down)) {
+      add_curved(cell, c, {z.lo, middle}, kind, cuts);
+      add_curved(cell, c, {middle, z.hi}, kind, cuts);
+    } else if (is_across) {
+      add_curved(cell, part_of(c, 0, 0.5, 0, 1), z, kind, cuts);
+      add_curved(cell, part_of(c, 0.5, 1, 0, 1), z, kind, cuts);
+    } else {
+      add_curved(cell, part_of(c, 0, 1, 0, 0.5), z, kind, cuts);
+      add_curved(cell, part_of(c, 0, 1, 0.5, 1), z, kind, cuts);
     }
   }
 
@@ -209,24 +185,8 @@ class DpTiles {
     return {camera.perspective, {dot(way, dp_.u), dot(way, dp_.v), dot(way, n)}};
   }
 
-  /// A proxy in the picture's plane needs all of the prism well before the eye.
-  bool near_eye(const Corners& corners, const Interval& z) const {
-    const PartCamera& camera = *seen_.camera;
-    if (!camera.perspective) return false;
-    const Vec3& n = camera.depth.n;
-    const double at = dot(n, seen_.dp->origin) + camera.depth.d, u = dot(n, dp_.u), v = dot(n, dp_.v),
-                 w = dot(n, dp_.n());
-    double least = std::numeric_limits<double>::infinity(), most = -least;
-    for (const Vec2 c : corners)
-      for (const double h : {z.lo, z.hi}) {
-        const double depth = at + u * c.x + v * c.y + w * h;
-        least = std::min(least, depth), most = std::max(most, depth);
-      }
-    return least < 0.2 * most || least <= 0;
-  }
-
-  void emit(const RegionCell& cell, const Corners& c, const Interval& z, std::uint32_t kind,
-            bool from_behind) {
+  void emit(const RegionCell& cell, const Corners& c, const Interval& z, std::uint32_t kind, bool from_behind,
+            const TileProxy* proxy) {
     std::array<std::uint32_t, 4> edges{};
     if (options_.edges && (kind & kPiecesTile)) {
       if (seen_.dp->features()) kind |= kEdgesTile;
@@ -238,6 +198,19 @@ class DpTiles {
     t.push_back(texel(c[0].x, c[0].y, c[1].x, c[1].y));
     t.push_back(texel(c[2].x, c[2].y, c[3].x, c[3].y));
     t.push_back({word(z.lo), word(z.hi), seen_.slot | (from_behind ? 0x80000000U : 0U), word(seen_.size_px)});
+    if (proxy) {
+      const double x = 2.0 / options_.width, y = 2.0 / options_.height;
+      const Corners& p = proxy->corners;
+      t.push_back(texel(p[0].x * x, p[0].y * y, p[1].x * x, p[1].y * y));
+      t.push_back(texel(p[2].x * x, p[2].y * y, p[3].x * x, p[3].y * y));
+      const Vec2 middle = (p[0] + p[1] + p[2] + p[3]) * 0.25;
+      const double column = whole_pixel(middle.x, options_.width),
+                   row = whole_pixel(middle.y, options_.height);
+      const Vec3 start =
+          picture_.at({column + 0.5 - options_.width / 2.0, row + 0.5 - options_.height / 2.0});
+      t.push_back(texel(start.x, start.y, start.z, 0));
+      t.back()[3] = static_cast<std::uint32_t>(column) | static_cast<std::uint32_t>(row) << 16;
+    }
     if (kind & kConicTile) {
       const ConicTest& q = *cell.conic;
       t.push_back(texel(q.a.x, q.a.y, q.a.one, q.b.x));
@@ -301,6 +274,7 @@ class DpTiles {
   const QuadricDp& dp_;
   const TileOptions& options_;
   Tiles& tiles_;
+  PictureOfDp picture_;
   std::uint32_t kind_ = 0;
   std::array<std::uint32_t, 4> run_{};
 };
@@ -308,7 +282,8 @@ class DpTiles {
 }  // namespace
 
 std::uint32_t tile_texels(std::uint32_t kind) {
-  return 3U + (kind & kConicTile ? 3U : 0U) + (kind & kEdgesTile ? 1U : 0U);
+  const bool proxy = (kind & kCurvedTile) && !(kind & kPrismTile);
+  return 3U + (proxy ? 3U : 0U) + (kind & kConicTile ? 3U : 0U) + (kind & kEdgesTile ? 1U : 0U);
 }
 
 void Tiles::clear() {

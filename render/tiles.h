@@ -35,6 +35,8 @@ inline constexpr int kFlatComponents = 128;
 
 /// Texels of one tile (RGBA32UI; floats by their bits):
 ///   corners 0, 1 | corners 2, 3 | z lo, z hi, slot (bit 31: the inner side is seen), the DP's size in pixels
+///   curved, unless kPrismTile: the proxy's corners (tile_proxy.h) 0, 1 | 2, 3, in clip coordinates | a pixel
+///     among them: where its centre's ray is at the depth of the DP's origin, and its column | row << 16
 ///   kConicTile: a.xyz, b.x | b.yz, c.xy | c.z, sign, steepest, 0     (RegionCell's)
 ///   kEdgesTile: first texel of its edges, lines, arcs, ellipses
 /// Edges stand in a run of their own: a line's two points; an arc's p0, p1 | p2, 4w², 0; an ellipse's centre,
@@ -42,9 +44,10 @@ inline constexpr int kFlatComponents = 128;
 std::uint32_t tile_texels(std::uint32_t kind);
 
 struct TileOptions {
-  bool flats = true;   ///< vertex shaders may hand on as much as kFlatPieces need
-  bool edges = false;  ///< feature edges are drawn
-  double edge_px = 0;  ///< how far from an edge's line its ink reaches
+  int width = 0, height = 0;  ///< of the picture
+  bool flats = true;          ///< vertex shaders may hand on as much as kFlatPieces need
+  bool edges = false;         ///< feature edges are drawn
+  double edge_px = 0;         ///< how far from an edge's line its ink reaches
 };
 
 /// A frame's tiles by kind, nearest DPs first.

@@ -261,8 +261,10 @@ Status Renderer::Impl::run(const Pass& pass) {
   }
   pass.scene->colors_changed = false;
   sections_ = pass.options->sections;
-  build_draw_list(*pass.scene, pass.view, sections_,
-                  {flats_, pass.edges(), pass.options->edge_width_px / 2 + 0.5}, list_);
+  build_draw_list(
+      *pass.scene, pass.view, sections_,
+      {pass.view.width, pass.view.height, flats_, pass.edges(), pass.options->edge_width_px / 2 + 0.5},
+      list_);
   view_spread_ = pass.view.perspective ? 1.0F : 0.0F;
   upload_list(*pass.scene);
   Status status = each_layer(pass, [](Layer& layer, const LayerPass& own) { return layer.find(own); });

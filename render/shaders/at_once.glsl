@@ -1,7 +1,6 @@
 // Colors drawn together with the ids, where a picture needs nothing else of a surface than its normal and a color of the primitive's.
 #ifdef AT_ONCE
 uniform vec2 axis_scale, axis_offset;  // as in shade_head.glsl
-uniform vec2 ray_scale;                // 1 / axis_scale
 uniform uint only_color;
 
 // A covector of a DP's frame in view space; p, q, f are the slot's.
@@ -20,8 +19,8 @@ vec3 own_color(uint color, uint face, uint primitive) {
 }
 
 // n is unit, in view space, of either side.
-vec4 color_at_once(vec3 n, vec3 color, vec2 at, float edge) {
-  vec3 v = spread > 0.0 ? normalize(vec3(-(axis_offset + at * ray_scale), 1.0)) : vec3(0.0, 0.0, 1.0);
+vec4 color_at_once(vec3 n, vec3 color, vec4 sight, vec2 from, float edge) {
+  vec3 v = normalize(vec3(sight.xy + from * sight.zw, 1.0));
   n = dot(n, v) < 0.0 ? -n : n;
 #if SHADING == 6
   vec3 c = zebra(n, v);

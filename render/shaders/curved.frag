@@ -1,11 +1,9 @@
-uniform vec2 pixel;        // 2 / picture
-uniform vec3 depth_terms;  // window depth = x + y·depth + z/depth
-uniform float near_depth;
-flat in vec3 s, f, p, q;
+flat in vec3 s, f, p, q, buffer_depth;
+flat in vec2 centre;
 flat in vec4 bend, depth;
 flat in vec3 side0, side1, side2, side3;
 flat in uvec3 id;
-flat in vec2 z0;
+flat in vec3 z0;
 #ifdef CONIC
 flat in vec3 form_a, form_b;
 flat in vec4 form_c;
@@ -20,12 +18,14 @@ flat in uvec4 edges;
 layout(location = 0) out uint out_id;
 #ifdef AT_ONCE
 flat in vec3 own;
-flat in vec4 cubic;
+flat in vec4 cubic, sight;
+flat in vec2 axes;
 flat in uint tilt;
 layout(location = 1) out vec4 out_color;
 #endif
 
 #ifdef SECTIONS
+uniform vec2 pixel;  // 2 / picture
 uniform vec4 sections[SECTIONS];  // see proxy.glsl
 #endif
 
@@ -42,8 +42,9 @@ bool in_tile(vec3 at, float z) {
   float c = dot(form_c.xyz, here);
   inside = min(inside, form_c.w * (dot(form_a, here) * dot(form_b, here) - c * c) + form_near);
 #endif
-  float ends = min(at.z - depth.y, depth.z - at.z) + depth.w;
-  return min(min(inside, ends), z - near_depth) >= 0.0;
+  // A neighbour begins where its own rounding says, and a ray may graze both.
+  float ends = min(at.z - depth.y, depth.z - at.z) + 3.0 * depth.w;
+  return min(min(inside, ends), z - buffer_depth.z) >= 0.0;
 }
 
 #ifdef EDGES
@@ -70,7 +71,7 @@ Region region_at(vec3 at, vec3 d, float reach_here) {
   r.near = false;
 #ifdef EDGES
   vec3 g = quadric_gradient(bend, depth.x, at);
-  vec3 across = reach_here * pixel.x * p, down = reach_here * pixel.y * q;
+  vec3 across = reach_here * p, down = reach_here * q;
   float along = dot(g, d);
   r.px = across - d * (dot(g, across) / along);
   r.py = down - d * (dot(g, down) / along);
@@ -88,9 +89,9 @@ Region region_at(vec3 at, vec3 d, float reach_here) {
 }
 
 void main() {
-  vec2 at = gl_FragCoord.xy * pixel - 1.0;
-  vec3 across = at.x * p + at.y * q;
-  vec3 o = s + z0.y * across, d = f + spread * across;
+  vec2 from = gl_FragCoord.xy - centre;
+  vec3 across = from.x * p + from.y * q;
+  vec3 o = s + z0.y * across, d = f + z0.z * across;
   Roots roots = quadric_roots(bend, depth.x, o, d);
   if (!(roots.discriminant >= 0.0)) discard;
 #ifdef ONE_ROOT
@@ -100,7 +101,7 @@ void main() {
   float t = on_second ? roots.q / roots.A : roots.C / roots.q;
   vec3 x = o + t * d;
   if (!in_tile(x, z0.x + t)) discard;
-  Region region = region_at(x, d, z0.y + spread * t);
+  Region region = region_at(x, d, z0.y + z0.z * t);
 #else
   float first = roots.C / roots.q, second = roots.q / roots.A;
   bool on_second = second < first;
@@ -113,7 +114,7 @@ void main() {
     x = y;
     on_second = !on_second;
   }
-  Region region = region_at(x, d, z0.y + spread * t);
+  Region region = region_at(x, d, z0.y + z0.z * t);
 #if defined(PIECES) || defined(PLANES)
   // Seldom: the nearer one is in the tile, but not in the region. A loop, since there are drivers that work through both sides of
   // every branch.
@@ -121,7 +122,7 @@ void main() {
     t = other;
     x = y;
     on_second = !on_second;
-    region = region_at(x, d, z0.y + spread * t);
+    region = region_at(x, d, z0.y + z0.z * t);
   }
 #endif
 #endif
@@ -139,8 +140,10 @@ void main() {
 #ifdef AT_ONCE
   vec3 gradient = quadric_gradient(bend, depth.x, x);
   gradient.xy -= cubic_gradient(cubic, unpacked_tilt(tilt), x.xy);
-  out_color = color_at_once(normalize(to_view(gradient, p, q, f)), own, at, edge);
+  vec2 in_picture = vec2(dot(gradient, p), dot(gradient, q)) * axes;
+  vec3 normal = normalize(vec3(in_picture, -dot(in_picture, sight.xy) - dot(gradient, f)));
+  out_color = color_at_once(normal, own, sight, from, edge);
 #endif
   float z = z0.x + t;
-  gl_FragDepth = depth_terms.x + depth_terms.y * z + depth_terms.z / z;
+  gl_FragDepth = (buffer_depth.x + buffer_depth.y * z) / (z0.z > 0.0 ? z : 1.0);
 }

@@ -1,10 +1,14 @@
-// A tile of a curved DP: a rectangle of the picture around the prism corners × [z lo, z hi]; or, where that reaches behind the eye, the prism
+// A tile of a curved DP: a quadrilateral of the picture around the prism corners × [z lo, z hi]; or, where that reaches behind the eye, the prism
 // itself, of which the far sides are drawn. Either way every pixel is tried once.
-flat out vec3 s, f, p, q;
+// Uniforms cost some drivers (llvmpipe) as much as twenty multiplications each in every fragment: what fragments need goes with the proxy.
+flat out vec3 s, f, p, q;   // the ray of the pixel at `centre`, and how it moves from pixel to pixel, p to the right and q down
+flat out vec2 centre;
+uniform float near_depth;
+flat out vec3 buffer_depth; // what is in the depth buffer is (x + y z) / z or, in parallel, x + y z; the nearest depth
 flat out vec4 bend, depth;  // λu λv a b | c, z lo, z hi, rounding
 flat out vec3 side0, side1, side2, side3;
 flat out uvec3 id;          // number, meta, pieces' texel
-flat out vec2 z0;           // the depth where rays start, and their reach there
+flat out vec3 z0;           // the depth where rays start, their reach there, and spread
 #ifdef CONIC
 flat out vec3 form_a, form_b;
 flat out vec4 form_c;       // and the sign inside
@@ -19,7 +23,8 @@ flat out uvec4 edges;
 #endif
 #ifdef AT_ONCE
 flat out vec3 own;
-flat out vec4 cubic;
+flat out vec4 cubic, sight;
+flat out vec2 axes;         // the view's, in steps of p and q
 flat out uint tilt;
 #endif
 
@@ -44,41 +49,6 @@ vec4 prism_corner(vec4 c01, vec4 c23, vec2 ends, vec4 rx, vec4 ry, vec4 rf, floa
   at.z += top ? grow : -grow;
   return to_clip(vec2(dot(rx, at), dot(ry, at)), dot(rf, at));
 }
-#else
-struct Rectangle {
-  vec2 axis, low, high;
-};
-
-vec2 on_picture(vec2 c, float z, vec4 rx, vec4 ry, vec4 rf) {
-  vec4 at = vec4(c, z, 1.0);
-  return vec2(dot(rx, at), dot(ry, at)) / (spread > 0.0 ? dot(rf, at) : 1.0) * picture * 0.5;
-}
-
-Rectangle around(vec2 axis, vec2 a, vec2 b, vec2 c, vec2 d, vec2 e, vec2 f, vec2 g, vec2 h) {
-  axis = dot(axis, axis) > 1e-12 ? normalize(axis) : vec2(1.0, 0.0);
-  mat2 turn = mat2(axis.x, -axis.y, axis.y, axis.x);
-  a = turn * a, b = turn * b, c = turn * c, d = turn * d, e = turn * e, f = turn * f, g = turn * g, h = turn * h;
-  return Rectangle(axis, min(min(min(a, b), min(c, d)), min(min(e, f), min(g, h))),
-                   max(max(max(a, b), max(c, d)), max(max(e, f), max(g, h))));
-}
-
-float area(Rectangle r) {
-  vec2 size = r.high - r.low + 1.0;
-  return size.x * size.y;
-}
-
-// The smaller of the two rectangles around the prism's picture that are aligned with one of the footprint's first two sides.
-vec2 picture_corner(vec4 c01, vec4 c23, vec2 ends, vec4 rx, vec4 ry, vec4 rf) {
-  vec2 a = on_picture(c01.xy, ends.x, rx, ry, rf), b = on_picture(c01.zw, ends.x, rx, ry, rf);
-  vec2 c = on_picture(c23.xy, ends.x, rx, ry, rf), d = on_picture(c23.zw, ends.x, rx, ry, rf);
-  vec2 e = on_picture(c01.xy, ends.y, rx, ry, rf), f = on_picture(c01.zw, ends.y, rx, ry, rf);
-  vec2 g = on_picture(c23.xy, ends.y, rx, ry, rf), h = on_picture(c23.zw, ends.y, rx, ry, rf);
-  Rectangle first = around(b - a + f - e, a, b, c, d, e, f, g, h), second = around(c - b + g - f, a, b, c, d, e, f, g, h);
-  if (area(second) < area(first)) first = second;
-  int i = gl_VertexID & 3;
-  vec2 p = vec2(i == 1 || i == 2 ? first.high.x + kGrow : first.low.x - kGrow, i >= 2 ? first.high.y + kGrow : first.low.y - kGrow);
-  return (p.x * first.axis + p.y * vec2(-first.axis.y, first.axis.x)) * 2.0 / picture;
-}
 #endif
 
 void main() {
@@ -88,18 +58,39 @@ void main() {
   Tile tile = tile_at(gl_VertexID >> 2);
 #endif
   int slot = tile.slot, next = tile.next;
+#ifndef PRISM
+  vec4 p01 = uintBitsToFloat(texelFetch(tiles, next)), p23 = uintBitsToFloat(texelFetch(tiles, next + 1));
+  uvec4 middle = texelFetch(tiles, next + 2);
+  next += 3;
+#endif
   uvec4 t0 = texelFetch(slots, slot * kSlotTexels), t1 = texelFetch(slots, slot * kSlotTexels + 1);
   vec4 t3 = slot_texel(slot, 3), t5 = slot_texel(slot, 5), t11 = slot_texel(slot, 11);
   vec4 c01 = tile.c01, c23 = tile.c23;
-  s = uintBitsToFloat(t0.xyz);
-  f = uintBitsToFloat(t1.xyz);
+#ifdef PRISM
+  centre = 0.5 * picture;
+#else
+  centre = vec2(middle.w & 0xffffu, middle.w >> 16) + 0.5;
+#endif
+  vec2 per_pixel = 2.0 / picture, at = centre * per_pixel - 1.0;
   p = slot_texel(slot, 2).xyz;
   q = t3.xyz;
+  vec3 across = at.x * p + at.y * q;
+  p *= per_pixel.x;
+  q *= per_pixel.y;
+  z0 = vec3(t11.w, reach(t11.w), spread);
+#ifdef PRISM
+  s = uintBitsToFloat(t0.xyz) + z0.y * across;
+#else
+  s = uintBitsToFloat(middle.xyz);
+#endif
+  f = uintBitsToFloat(t1.xyz) + spread * across;
+  buffer_depth = vec3(spread > 0.0 ? depth_terms.zx : depth_terms.xy, near_depth);
   bend = slot_texel(slot, 4);
   depth = vec4(t5.x, tile.ends, t3.w);
-  z0 = vec2(t11.w, reach(t11.w));
   id = uvec3(uint(slot) + 1u, t0.w | (tile.from_behind ? kFromBehind : 0u), t1.w);
 #ifdef AT_ONCE
+  sight = sight_from(centre);
+  axes = axis_scale / per_pixel;
   own = own_color(floatBitsToUint(slot_texel(slot, 2).w), floatBitsToUint(t5.w), floatBitsToUint(t11.x));
   int terms = int(floatBitsToUint(t11.z));
   cubic = terms > 0 ? heap_texel(terms) : vec4(0.0);
@@ -120,11 +111,10 @@ void main() {
   side2 = side_function(c23.xy, c23.zw, t3.w);
   side3 = side_function(c23.zw, c01.xy, t3.w);
 
-  vec4 rx = slot_texel(slot, 8), ry = slot_texel(slot, 9), rf = slot_texel(slot, 10);
 #ifdef PRISM
-  gl_Position = prism_corner(c01, c23, tile.ends, rx, ry, rf, t11.y);
+  gl_Position = prism_corner(c01, c23, tile.ends, slot_texel(slot, 8), slot_texel(slot, 9), slot_texel(slot, 10), t11.y);
 #else
-  gl_Position = vec4(picture_corner(c01, c23, tile.ends, rx, ry, rf), 0.5, 1.0);
+  gl_Position = vec4(corner_of(p01, p23, gl_VertexID & 3), 0.5, 1.0);
 #endif
   cut_nothing();  // curved.frag does, point by point
 #ifdef EDGES

@@ -1,4 +1,4 @@
-uniform vec2 pixel;  // 2 / picture
+flat in vec2 centre;
 flat in vec3 side0, side1, side2, side3;
 flat in uint id;
 #ifdef CONIC
@@ -22,11 +22,12 @@ flat in uvec4 edges;
 layout(location = 0) out uint out_id;
 #ifdef AT_ONCE
 flat in vec3 normal, own;
+flat in vec4 sight;
 layout(location = 1) out vec4 out_color;
 #endif
 
 void main() {
-  vec3 at = vec3(gl_FragCoord.xy * pixel - 1.0, 1.0);
+  vec3 at = vec3(gl_FragCoord.xy - centre, 1.0);
   vec4 sides = vec4(dot(side0, at), dot(side1, at), dot(side2, at), dot(side3, at));
   float inside = min(min(sides.x, sides.y), min(sides.z, sides.w));
 #ifdef CONIC
@@ -41,8 +42,8 @@ void main() {
   Region region;
   region.p = vec3(p, 0.0);
 #ifdef EDGES
-  region.px = vec3((vec2(row_x.x, row_y.x) - p * row_w.x) * (w * pixel.x), 0.0);
-  region.py = vec3((vec2(row_x.y, row_y.y) - p * row_w.y) * (w * pixel.y), 0.0);
+  region.px = vec3((vec2(row_x.x, row_y.x) - p * row_w.x) * w, 0.0);
+  region.py = vec3((vec2(row_x.y, row_y.y) - p * row_w.y) * w, 0.0);
   region.nearest = 1e30;
 #endif
 #ifdef PIECES
@@ -68,6 +69,6 @@ void main() {
   out_id = id;
 #endif
 #ifdef AT_ONCE
-  out_color = color_at_once(normal, own, at.xy, edge);
+  out_color = color_at_once(normal, own, sight, at.xy, edge);
 #endif
 }

@@ -1,9 +1,11 @@
 // A tile of a planar DP is drawn itself. What is covered follows from its sides as linear functions of (X, Y): with (x, y, 1)·W linear in
 // the picture's coordinates, so is n·(x, y)·W + d·W, and a conic is a quadratic form.
+flat out vec2 centre;  // of the picture; what follows are functions of the pixels from there (curved.vert)
 flat out vec3 side0, side1, side2, side3;
 flat out uint id;
 #ifdef AT_ONCE
 flat out vec3 normal, own;
+flat out vec4 sight;
 #endif
 #ifdef CONIC
 flat out vec3 form_a, form_b;
@@ -32,7 +34,7 @@ vec3 side_function(vec2 a, vec2 b, mat3 rows, float rounding) {
   if (l == 0.0) return vec3(0.0, 0.0, 1e30);
   vec2 inward = vec2(-d.y, d.x) / l;
   vec3 side = rows * vec3(inward, rounding - dot(inward, a));
-  return side / max(length(side.xy * 2.0 / picture), 1e-30);
+  return side / max(length(side.xy), 1e-30);
 }
 
 void main() {
@@ -55,8 +57,10 @@ void main() {
   vec2 hy = s.xy * gs.z - gs.xy * s.z + b.xy * f.z - f.xy * b.z;
   float eye_z = spread > 0.0 ? s.z - z0 * f.z : -f.z;
   float sign_w = eye_z < 0.0 ? 1.0 : -1.0;
-  mat3 rows = sign_w * mat3(hx.x, hy.x, h0.x, hx.y, hy.y, h0.y, fs.z, gs.z, f.z);  // columns: xW, yW, W over (X, Y, 1)
+  mat3 rows = sign_w * mat3(hx.x, hy.x, h0.x, hx.y, hy.y, h0.y, fs.z, gs.z, f.z);  // columns: xW, yW, W over (X, Y, 1), and then over pixels
 
+  centre = 0.5 * picture;
+  rows = matrixCompMult(rows, mat3(vec3(2.0 / picture, 1.0), vec3(2.0 / picture, 1.0), vec3(2.0 / picture, 1.0)));
   float widen = t3.w;
   side0 = side_function(c01.xy, c01.zw, rows, widen);
   side1 = side_function(c01.zw, c23.xy, rows, widen);
@@ -65,6 +69,7 @@ void main() {
   id = uint(slot) + 1u;
 #ifdef AT_ONCE
   planar_look(slot, normal, own);
+  sight = sight_from(centre);
 #endif
 #ifdef CONIC
   Conic conic = conic_at(next);

@@ -79,6 +79,14 @@ float way_per_pixel(vec2 ju, vec2 jv, vec2 tangent) {
 }
 
 #ifdef AT_ONCE
+uniform vec2 ray_scale;  // 1 / axis_scale
+
+// The direction to the viewer is (xy + zw·from, 1), not of unit length, with `from` the pixels from that centre of the picture.
+vec4 sight_from(vec2 centre) {
+  vec2 per_pixel = -spread * ray_scale * 2.0 / picture;
+  return vec4(-spread * axis_offset + per_pixel * (centre - 0.5 * picture), per_pixel);
+}
+
 // A planar DP's normal in view space and its color.
 void planar_look(int slot, out vec3 normal, out vec3 own) {
   vec3 f = slot_texel(slot, 1).xyz, q = slot_texel(slot, 3).xyz;

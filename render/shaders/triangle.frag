@@ -7,8 +7,9 @@ uniform int first_triangle, first_face;
 int own_face() { return first_face + int(texelFetch(triangle_faces, first_triangle + gl_PrimitiveID).x); }
 #endif
 #ifdef AT_ONCE
-uniform vec2 pixel;  // 2 / picture
 in vec3 normal;
+flat in vec4 sight;
+flat in vec2 centre;
 layout(location = 1) out vec4 out_color;
 #ifdef OWN_COLORS
 uniform uint first_primitive;
@@ -17,8 +18,8 @@ vec3 triangle_color() {
   return own_color(texelFetch(colors, face).x, uint(face) + 1u, first_primitive + uint(gl_PrimitiveID) + 1u);
 }
 #else
-uniform vec3 run_color;
-vec3 triangle_color() { return run_color; }
+flat in vec3 own;
+vec3 triangle_color() { return own; }
 #endif
 #endif
 
@@ -28,6 +29,6 @@ void main() {
 #endif
   out_id = (first_number + uint(gl_PrimitiveID)) | kTriangle;
 #ifdef AT_ONCE
-  out_color = color_at_once(normalize(normal), triangle_color(), gl_FragCoord.xy * pixel - 1.0, 0.0);
+  out_color = color_at_once(normalize(normal), triangle_color(), sight, gl_FragCoord.xy - centre, 0.0);
 #endif
 }
