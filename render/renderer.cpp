@@ -89,6 +89,7 @@ Status Renderer::Impl::init(const GetProcAddress& get_proc_address) {
   GLint components = 0;
   gl->GetIntegerv(GL_MAX_VARYING_COMPONENTS, &components);
   flats_ = components >= kFlatComponents;
+  at_once_ = components >= kAtOnceComponents;
   instances_ = TexelBuffer(*gl, GL_RGBA32F);
   slots_ = TexelBuffer(*gl, GL_RGBA32UI);
   runs_ = TexelBuffer(*gl, GL_RGBA32UI);
@@ -169,7 +170,7 @@ Status Renderer::Impl::draw_samples(const Scene::Impl& scene, const ViewRays& vi
   Status status = prepare_targets(view.width, view.height,
                                   others | color | exact | (screen ? 1U << kScreenPicture : 0U), format);
   const bool together = options.samples == 1 || !color;
-  const bool at_once = screen && !floats && drawn_at_once(options.shading, scene.highlights) &&
+  const bool at_once = at_once_ && screen && !floats && drawn_at_once(options.shading, scene.highlights) &&
                        options.lights.empty() && options.sections.empty();
   if (at_once && status.ok() && !together) prepare_sample(view.width, view.height);
   for (int i = 0; i < options.samples && status.ok() && !together; ++i) {

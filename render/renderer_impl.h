@@ -145,6 +145,7 @@ class Renderer::Impl {
   std::map<std::string, GlProgram> programs_;
   DrawList list_;
   std::vector<DrawOptions::Section> sections_;  ///< this pass's
+  bool at_once_ = false;                        ///< vertex shaders may hand on what colors at once need
   bool flats_ = false;                          ///< vertex shaders may hand on as much as kFlatPieces need
   TexelBuffer instances_, slots_, runs_, tiles_;
   GlBuffer items_, quads_, prisms_;

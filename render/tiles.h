@@ -32,6 +32,8 @@ struct FlatPieces {
 inline constexpr FlatPieces kFlatPieces[] = {{0, 1}, {0, 2}, {0, 4}, {2, 0}, {4, 4}};
 /// The outputs of a vertex shader that they need, in components; OpenGL 3.3 promises fewer.
 inline constexpr int kFlatComponents = 128;
+/// What colors drawn together with ids need.
+inline constexpr int kAtOnceComponents = 80;
 
 /// Texels of one tile (RGBA32UI; floats by their bits):
 ///   corners 0, 1 | corners 2, 3 | z lo, z hi, slot (bit 31: the inner side is seen), the DP's size in pixels
