@@ -17,9 +17,10 @@ const int kInstanceTexels = 10;
 const uint kPlanar = 1u, kFlipped = 2u, kRectangle = 4u, kPieces = 8u, kReferenceInside = 16u, kCubic = 1u << 14;
 // In a tile's meta: what is seen is the inner side.
 const uint kFromBehind = 1u << 15;
-// Numbers in the id picture: 0 background; or slot + 1, with kSecondRoot if the ray met the quadric there, and how much of the pixel a
+// Numbers in the id picture: 0 background; or slot + 1, with kFallingRoot if F falls along the ray where it met a curved quadric (wherever
+// the ray starts that a root is found from), and how much of the pixel a
 // feature edge covers; or a triangle's number with kTriangle, in the two top bits; or, with both of them set, a layer and its number (layer.h).
-const uint kTriangle = 0x80000000u, kSecondRoot = 0x40000000u, kSlotMask = 0x00ffffffu, kTriangleMask = 0x3fffffffu;
+const uint kTriangle = 0x80000000u, kFallingRoot = 0x40000000u, kSlotMask = 0x00ffffffu, kTriangleMask = 0x3fffffffu;
 const int kEdgeShift = 24;
 const float kEdgeLevels = 63.0;
 

@@ -127,7 +127,7 @@ void main() {
 #endif
 #endif
   if (!region.inside) discard;
-  out_id = on_second ? id.x | kSecondRoot : id.x;
+  out_id = on_second == (roots.slope >= 0.0) ? id.x | kFallingRoot : id.x;
   float edge = 0.0;
 #ifdef EDGES
   meet_bounds(region);

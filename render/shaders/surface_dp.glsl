@@ -15,7 +15,8 @@ Surface surface_at(uint number, vec2 at) {
   float z0 = uintBitsToFloat(t11.w);
   vec3 across = at.x * p + at.y * q, o = s + reach(z0) * across, d = f + spread * across;
   Roots roots = quadric_roots(bend, c, o, d);
-  float t = (number & kSecondRoot) != 0u ? roots.q / roots.A : roots.C / roots.q;
+  bool on_second = (meta & kPlanar) == 0u && ((number & kFallingRoot) != 0u) == (roots.slope >= 0.0);
+  float t = on_second ? roots.q / roots.A : roots.C / roots.q;
   vec3 x = o + t * d, g = quadric_gradient(bend, c, x);
 
   vec3 right = p * axis_scale.x, up = q * axis_scale.y;
