@@ -31,7 +31,8 @@ Distribution distribution(std::vector<float>& values);
 /// the centre's by at most kContinuousDepthPx pixels.
 inline constexpr int kInteriorRadius = 2;
 inline constexpr double kContinuousDepthPx = 12;
-/// A hole: an interior pixel at which B has nothing, or something farther off than this in depth, in pixels.
+/// A hole: an interior pixel at which B has nothing, or a surface nearer or farther by more than this, in
+/// pixels: seen through, or stopped up.
 inline constexpr double kHoleDepthPx = 8;
 
 struct GeometryMetrics {

@@ -64,9 +64,15 @@ std::string reference_name(const Study& study) {
 
 }  // namespace
 
+const std::string& RowKeys::digest_text(const std::string& path) {
+  std::string& digest = digests_[path];
+  if (digest.empty()) digest = digest_of(path);
+  return digest;
+}
+
 std::string RowKeys::of(const Study& study, const StudyRow& row) {
-  std::string& digest = digests_[row.model.path];
-  if (digest.empty()) digest = digest_of(row.model.path);
+  const std::string digest =
+      digest_text(row.model.path) + (row.model.of.empty() ? "" : " of " + digest_text(row.model.of));
   const ViewOptions& camera = row.view.camera;
   std::string key = row.model.name + "|" + digest + "|" + camera.view + "," + Json(row.view.zoom).dump() +
                     "," + Json(camera.fov_degrees).dump() + "," + (camera.orthographic ? "o" : "p") + "," +

@@ -23,6 +23,7 @@ class RowKeys {
   std::string picture_of(const Study& study, const StudyRow& row);
 
  private:
+  const std::string& digest_text(const std::string& path);
   std::map<std::string, std::string> digests_;  ///< by path
 };
 

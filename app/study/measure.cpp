@@ -10,7 +10,9 @@
 #include "../load.h"
 #include "../render_primitive.h"
 #include "../stopwatch.h"
+#include "agreement.h"
 #include "journal.h"
+#include "processor_clock.h"
 #include "truth.h"
 
 namespace dupin::app {
@@ -30,7 +32,8 @@ struct Case {
   std::unique_ptr<RenderPrimitive> primitive;
   std::unique_ptr<Scene> scene;
   RenderStats stats;
-  std::vector<double> prepares, frames;
+  std::unique_ptr<Loaded> own;  ///< of a file that is prepared already: what was read from it
+  std::vector<double> prepares, prepare_cpus, frames, frame_cpus;
   RowResult result;
   bool failed() const { return !result.failure.empty(); }
   void fail(const Status& status) { result.failure = status.message.empty() ? "failed" : status.message; }
@@ -70,6 +73,13 @@ void add_difference(const PictureDifference& d, Json& json) {
   json["normal_max_degrees"] = d.geometry->normal_degrees.max;
 }
 
+void add_agreement(const Agreement& a, Json& json) {
+  json["agreeing_px"] = a.pixels;
+  if (a.pixels == 0) return;
+  json["agreeing_color_p99"] = a.color_p99;
+  json["agreeing_color_max"] = a.color_max;
+}
+
 void add_preparation(const Case& c, Json& json) {
   json["faces"] = c.stats.faces.total();
   json["faces_skipped"] = c.stats.faces.skipped.size();
@@ -88,6 +98,7 @@ void add_times(const Case& c, Json& json) {
   json["prepare_s"] = quantile(c.prepares, 0.5);
   json["prepare_least_s"] = quantile(c.prepares, 0);
   json["prepare_most_s"] = quantile(c.prepares, 1);
+  if (!c.prepare_cpus.empty()) json["prepare_cpu_s"] = quantile(c.prepare_cpus, 0.5);
   if (c.stats.sampled) {
     json["sample_s"] = c.stats.sampled->sample_seconds;
     json["simplify_s"] = c.stats.sampled->simplify_seconds;
@@ -97,6 +108,7 @@ void add_times(const Case& c, Json& json) {
   json["frame_ms"] = quantile(c.frames, 0.5);
   json["frame_p10_ms"] = quantile(c.frames, 0.1);
   json["frame_p90_ms"] = quantile(c.frames, 0.9);
+  json["frame_cpu_ms"] = quantile(c.frame_cpus, 0.5);
   json["frames"] = c.frames.size();
 }
 
@@ -115,46 +127,6 @@ DrawOptions draw_options(const RenderOptions& options) {
 }
 
 }  // namespace
-
-const std::vector<std::string>& result_columns() {
-  static const std::vector<std::string> names{"faces",
-                                              "faces_skipped",
-                                              "primitives",
-                                              "bytes",
-                                              "clips",
-                                              "points_before",
-                                              "points",
-                                              "packed_bytes",
-                                              "bound",
-                                              "bound_px",
-                                              "normal_bound_degrees",
-                                              "covered_px",
-                                              "reference_covered_px",
-                                              "rmse",
-                                              "rmse_covered",
-                                              "psnr",
-                                              "ssim",
-                                              "flip",
-                                              "silhouette_px",
-                                              "outline_p99_px",
-                                              "outline_max_px",
-                                              "holes_px",
-                                              "extra_px",
-                                              "depth_p50_px",
-                                              "depth_p99_px",
-                                              "depth_max_px",
-                                              "normal_p50_degrees",
-                                              "normal_p99_degrees",
-                                              "normal_max_degrees"};
-  return names;
-}
-
-const std::vector<std::string>& time_columns() {
-  static const std::vector<std::string> names{
-      "import_s", "prepare_s", "prepare_least_s", "prepare_most_s", "sample_s", "simplify_s",
-      "upload_s", "frame_ms",  "frame_p10_ms",    "frame_p90_ms",   "frames"};
-  return names;
-}
 
 class Measurer::Impl {
  public:
@@ -196,9 +168,10 @@ class Measurer::Impl {
 
   /// The model, and the camera of the rows.
   Status begin(const StudyRow& row) {
-    const Result<const Meshed*> model = meshed(row.model, 0);
+    const Result<const Meshed*> model = base(row);
     if (!model.ok()) return model.status();
-    if (!truth_) truth_ = std::make_unique<Truth>((*model)->loaded.model);
+    const bool has_faces = row.model.kind() == ModelKind::cad || !row.model.of.empty();
+    if (!truth_) truth_ = std::make_unique<Truth>((*model)->loaded.model, has_faces);
     const Result<Camera> camera = truth_->camera(row);
     if (!camera.ok()) return camera.status();
     camera_ = *camera;
@@ -209,11 +182,20 @@ class Measurer::Impl {
     return {};
   }
 
+  /// What a row's picture is meant to show.
+  Result<const Meshed*> base(const StudyRow& row) {
+    if (row.model.kind() != ModelKind::points || !row.model.of.empty()) return meshed(row.model, 0);
+    if (const auto at = models_.find(0); at != models_.end()) return &at->second;
+    Result<Loaded> loaded = make_primitive(row.render)->load(session_, row.render);
+    if (!loaded.ok()) return loaded.status();
+    return &models_.emplace(0, Meshed{std::move(*loaded), {}}).first->second;
+  }
+
   Result<const Meshed*> meshed(const StudyModel& model, double deflection) {
     if (const auto at = models_.find(deflection); at != models_.end()) return &at->second;
     Meshed made;
     for (int i = 0; i < (deflection > 0 ? study_.prepares : 1); ++i) {
-      Result<Loaded> loaded = app::load(session_, {model.path}, {deflection});
+      Result<Loaded> loaded = app::load(session_, {model.reference_path()}, {deflection});
       if (!loaded.ok()) return loaded.status();
       made.mesh_seconds.push_back(loaded->model.mesh_seconds);
       made.loaded = std::move(*loaded);
@@ -225,24 +207,47 @@ class Measurer::Impl {
 
   Status load(Case& c) {
     c.primitive = make_primitive(c.row->render);
+    describe(c);
+    if (c.row->is_prepared()) return {};
     const Result<const Meshed*> model = meshed(c.row->model, c.primitive->deflection(c.row->render));
     if (!model.ok()) return model.status();
     c.model = &(*model)->loaded.model;
     c.result.times["import_s"] = (*model)->loaded.import_seconds;
+    return {};
+  }
+
+  void describe(Case& c) const {
     c.result.command = "dupin render " + c.row->model.name + " -o picture.png " + camera_arguments(camera_) +
                        (c.row->value_of("samples").empty() ? " --samples 1" : "") +
                        (c.row->value_of("edges").empty() ? " --no-edges " : " ") + c.row->arguments();
-    return {};
   }
 
   Status prepare(Case& c, int turn) {
     c.primitive = make_primitive(c.row->render);
+    if (c.row->is_prepared()) return read_prepared(c);
     Meshed& meshed = models_.at(c.primitive->deflection(c.row->render));
     meshed.loaded.model.mesh_seconds =
         meshed.mesh_seconds[static_cast<std::size_t>(turn) % meshed.mesh_seconds.size()];
+    const double before = processor_seconds();
     const Status status =
         c.primitive->prepare({*c.model, camera_, c.row->render, session_.progress()}, c.stats);
     c.prepares.push_back(c.stats.times.prepare);
+    // The tessellation runs in another process.
+    if (c.primitive->deflection(c.row->render) == 0) c.prepare_cpus.push_back(processor_seconds() - before);
+    return status;
+  }
+
+  /// Of a file that holds what is drawn, reading is the preparation.
+  Status read_prepared(Case& c) {
+    const double before = processor_seconds();
+    Result<Loaded> loaded = c.primitive->load(session_, c.row->render);
+    if (!loaded.ok()) return loaded.status();
+    c.own = std::make_unique<Loaded>(std::move(*loaded));
+    c.model = &c.own->model;
+    const Status status =
+        c.primitive->prepare({*c.model, camera_, c.row->render, session_.progress()}, c.stats);
+    c.prepares.push_back(c.own->import_seconds + c.stats.times.prepare);
+    c.prepare_cpus.push_back(processor_seconds() - before);
     return status;
   }
 
@@ -282,9 +287,12 @@ class Measurer::Impl {
   Status time_frame(Case& c, bool counts) {
     DrawOptions draw = draw_options(c.row->render);
     draw.outputs = kScreen;
+    const double before = processor_seconds();
     const Result<FrameStats> frame = renderer_->draw_only(*c.scene, camera_, draw);
     if (!frame.ok()) return frame.status();
-    if (counts) c.frames.push_back(frame->milliseconds);
+    if (!counts) return {};
+    c.frames.push_back(frame->milliseconds);
+    c.frame_cpus.push_back(1e3 * (processor_seconds() - before));
     return {};
   }
 
@@ -301,6 +309,7 @@ class Measurer::Impl {
     const Result<PictureDifference> difference = compare((*reference)->picture, picture, {});
     if (!difference.ok()) return difference.status();
     add_difference(*difference, c.result.results);
+    add_agreement(agreement((*reference)->picture, picture), c.result.results);
     return study_.pictures ? keep_pictures(c, **reference, picture) : Status{};
   }
 

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "../render_primitive.h"
+#include "../tree_files.h"
 #include "study.h"
 
 namespace dupin::app {
@@ -92,7 +93,34 @@ Status misfit(const StudyRow& row) {
   return {};
 }
 
+/// Points and trees are what they are, and say nothing of the surfaces that they were made of.
+Status misfit_of_file(const Study& study, const StudyRow& row) {
+  const auto bad = [&](const std::string& why) {
+    return Status{StatusCode::invalid_argument, "'" + row.model.name + "' " + why};
+  };
+  const ModelKind kind = row.model.kind();
+  if (kind == ModelKind::cad) return {};
+  if (kind == ModelKind::tree && !row.is_prepared() && row.render.primitive != "triangles")
+    return bad("is a point tree: it is drawn as pop, qsplat or triangles, not as " + row.render.primitive);
+  if (!row.value_of("deflection").empty()) return bad("is drawn as it is: deflection means nothing to it");
+  if (kind == ModelKind::points && study.draw && study.reference != ReferenceKind::none &&
+      row.model.of.empty())
+    return bad(
+        "holds points: say of what they are, { file = \"…\", of = \"part.step\" }, or reference = \"none\"");
+  return {};
+}
+
 }  // namespace
+
+ModelKind StudyModel::kind() const {
+  if (path.size() > 4 && path.compare(path.size() - 4, 4, ".dps") == 0) return ModelKind::points;
+  return is_tree_file(path) ? ModelKind::tree : ModelKind::cad;
+}
+
+bool StudyRow::is_prepared() const {
+  const bool tree = render.primitive == "pop" || render.primitive == "qsplat";
+  return model.kind() == ModelKind::points || (model.kind() == ModelKind::tree && tree);
+}
 
 std::string StudyRow::arguments() const {
   std::string text;
@@ -138,6 +166,7 @@ Status resolve_row(const Study& study, StudyRow& row) {
   row.render.view.resolution = {row.width, row.height};
   if (const Status status = row.render.check(); !status.ok()) return status;
   if (const Status status = misfit(row); !status.ok()) return status;
+  if (const Status status = misfit_of_file(study, row); !status.ok()) return status;
   row.looks.clear();
   for (const StudyOption& option : row.options) {
     if (holds(kLooks, option.first)) row.looks.push_back(option);

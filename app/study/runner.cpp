@@ -28,7 +28,7 @@ class Runner {
     if (finished_ > 0) session_.note(std::to_string(finished_) + " rows are there already");
     for (std::size_t i = 0; i < all && failure_.ok();) {
       std::size_t end = i + 1;
-      while (end < all && pending_[end]->model.path == pending_[i]->model.path) ++end;
+      while (end < all && pending_[end]->model.id() == pending_[i]->model.id()) ++end;
       measure_model({pending_.begin() + static_cast<std::ptrdiff_t>(i),
                      pending_.begin() + static_cast<std::ptrdiff_t>(end)});
       i = end;
@@ -56,8 +56,8 @@ class Runner {
                      [this](const StudyRow* a, const StudyRow* b) { return place_of(*a) < place_of(*b); });
   }
   std::pair<std::size_t, std::size_t> place_of(const StudyRow& row) {
-    const std::size_t model = places_.emplace(row.model.path, places_.size()).first->second;
-    const std::string picture = row.model.path + "\n" + row.view.name + "\n" + std::to_string(row.width) +
+    const std::size_t model = places_.emplace(row.model.id(), places_.size()).first->second;
+    const std::string picture = row.model.id() + "\n" + row.view.name + "\n" + std::to_string(row.width) +
                                 "x" + std::to_string(row.height);
     return {model, places_.emplace(picture, places_.size()).first->second};
   }
@@ -69,10 +69,11 @@ class Runner {
       std::size_t at = rows.front()->index;
       while (const auto message = worker.next(study_.row_seconds)) {
         at = message->row;
+        // Asked only here: rows that took turns are finished together, and none of them is to be lost.
+        if (!message->done && over()) return;
         if (!message->done) continue;
         finish(message->result, message->gl_renderer);
         remove(rows, message->row);
-        if (over()) return;
       }
       const std::string why = worker.end();
       if (rows.empty()) return;

@@ -20,10 +20,19 @@ struct StudyView {
   double zoom = 1;
 };
 
+/// What is in a model's file: by its name, and of trees by how it begins.
+enum class ModelKind { cad, points, tree };
+
 struct StudyModel {
   std::string name;  ///< as the study has it
   std::string path;
-  int line = 0;  ///< of the study, for what is wrong with the file
+  int line = 0;    ///< of the study, for what is wrong with the file
+  std::string of;  ///< the path of the model that points or a tree were made of; "": not told
+  ModelKind kind() const;
+  /// Where what its pictures are compared with comes from.
+  const std::string& reference_path() const { return of.empty() ? path : of; }
+  /// The same for rows that have their reference in common.
+  std::string id() const { return path + "\n" + of; }
 };
 
 /// A key and its value, as `dupin render` takes them: {"tolerance", "0.5"}. A flag has the value "true".
@@ -39,6 +48,8 @@ struct StudyRow {
   /// The options that change how a picture looks but not what is drawn, which a reference shares.
   std::vector<StudyOption> looks;
 
+  /// Points and trees are drawn as their files have them: nothing is made from faces.
+  bool is_prepared() const;
   /// "--tolerance 0.5 …"
   std::string arguments() const;
   std::string value_of(const std::string& key) const;  ///< "" where it is not set

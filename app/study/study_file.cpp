@@ -214,22 +214,54 @@ class Reader {
   std::vector<StudyModel> models_at(const toml::node& node) {
     std::vector<StudyModel> models;
     for (const toml::node* n : elements(node)) {
-      const std::string name = string_at(*n, "a model");
-      const std::string written = expanded(name, line_of(*n));
+      if (const toml::table* table = n->as_table())
+        models.push_back(model_table(*table));
+      else
+        add_models(*n, models);
       if (!ok()) return {};
-      const fs::path path = fs::path(written).is_absolute() ? fs::path(written) : fs::path(folder_) / written;
-      std::error_code error;
-      if (fs::is_directory(path, error)) {
-        for (const std::string& file : model_files(path.string()))
-          models.push_back({name + "/" + fs::relative(file, path, error).string(), file, line_of(*n)});
-        if (models.empty()) fail(line_of(*n), "'" + name + "' holds no models");
-      } else if (fs::exists(path, error)) {
-        models.push_back({name, path.string(), line_of(*n)});
-      } else {
-        fail(line_of(*n), "model '" + name + "' is not there");
-      }
     }
     return models;
+  }
+  fs::path path_at(const toml::node& node, const std::string& name) {
+    const std::string written = expanded(name, line_of(node));
+    const fs::path path = fs::path(written).is_absolute() ? fs::path(written) : fs::path(folder_) / written;
+    std::error_code error;
+    if (ok() && !fs::exists(path, error)) fail(line_of(node), "model '" + name + "' is not there");
+    return path;
+  }
+  /// A file, or all that are in a folder.
+  void add_models(const toml::node& node, std::vector<StudyModel>& models) {
+    const std::string name = string_at(node, "a model");
+    const fs::path path = ok() ? path_at(node, name) : fs::path();
+    if (!ok()) return;
+    std::error_code error;
+    if (!fs::is_directory(path, error)) return models.push_back({name, path.string(), line_of(node), ""});
+    const std::vector<std::string> files = model_files(path.string());
+    if (files.empty()) fail(line_of(node), "'" + name + "' holds no models");
+    for (const std::string& file : files)
+      models.push_back({name + "/" + fs::relative(file, path, error).string(), file, line_of(node), ""});
+  }
+  /// { file = "part.dps", of = "part.step" }
+  StudyModel model_table(const toml::table& table) {
+    StudyModel model;
+    model.line = line_of(table);
+    for (const auto& [key, node] : entries(table)) {
+      const std::string name(key->str());
+      if (name != "file" && name != "of") {
+        fail(line_of(*key), "unknown key '" + name + "' of a model (file, of)");
+        break;
+      }
+      const std::string written = string_at(*node, name);
+      const fs::path path = ok() ? path_at(*node, written) : fs::path();
+      std::error_code error;
+      if (ok() && fs::is_directory(path, error)) fail(line_of(*node), "'" + written + "' is a folder");
+      (name == "file" ? model.path : model.of) = path.string();
+      if (name == "file") model.name = written;
+    }
+    if (ok() && model.path.empty()) fail(model.line, "a model's table needs its file");
+    if (ok() && !model.of.empty() && model.kind() == ModelKind::cad)
+      fail(model.line, "'" + model.name + "' is neither points (.dps) nor a tree (.dpt): 'of' is theirs");
+    return model;
   }
 
   std::vector<StudyView> views_at(const toml::node& node) {

@@ -40,8 +40,8 @@ Vec3 seen_in_the_middle(const exact::ExactScene& scene, Camera camera, const Vec
 }  // namespace
 
 bool Truth::has_exact_faces() const {
-  return std::any_of(model_.parts.begin(), model_.parts.end(),
-                     [](const Part& p) { return !p.faces.empty(); });
+  return has_faces_ && std::any_of(model_.parts.begin(), model_.parts.end(),
+                                   [](const Part& p) { return !p.faces.empty(); });
 }
 
 const exact::ExactScene& Truth::scene() {

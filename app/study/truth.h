@@ -17,7 +17,8 @@ namespace dupin::app {
 class Truth {
  public:
   /// The model must outlive it.
-  explicit Truth(const Model& model) : model_(model) {}
+  /// Without `has_faces` the model's faces are but names and colors: of points that were read from a file.
+  explicit Truth(const Model& model, bool has_faces = true) : model_(model), has_faces_(has_faces) {}
   /// Parts whose faces are meshes alone are not known to the caster.
   bool has_exact_faces() const;
   const exact::ExactScene& scene();
@@ -27,6 +28,7 @@ class Truth {
 
  private:
   const Model& model_;
+  bool has_faces_;
   std::unique_ptr<exact::ExactScene> scene_;
 };
 
