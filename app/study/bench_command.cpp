@@ -1,5 +1,6 @@
 // dupin bench: every primitive over its quality knob, on a corpus. It is a study, which it writes for itself.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -22,7 +23,8 @@ struct BenchOptions {
   std::vector<std::string> primitives;
   int frames = 15, prepares = 3;
   std::size_t models = 0;
-  bool pictures = false;
+  int programs = 3;
+  bool pictures = false, list = false;
 };
 
 /// A primitive over its knob. Where two options make one knob their values go together.
@@ -105,6 +107,7 @@ int run(BenchOptions options) {
   std::error_code error;
   for (const std::string& path : options.corpus) {
     const fs::path corpus = fs::absolute(path, error);
+    if (!fs::exists(corpus, error)) return fail({StatusCode::invalid_argument, path + ": is not there"});
     const bool folder = fs::is_directory(corpus, error);
     const auto found = folder ? model_files(corpus.string()) : std::vector<std::string>{corpus.string()};
     if (found.empty()) return fail({StatusCode::unreadable, path + ": holds no models"});
@@ -114,6 +117,12 @@ int run(BenchOptions options) {
   options.run.text = study_text(options, files);
   const Result<Study> study = parse_study(options.run.text, "bench", "");
   if (!study.ok()) return fail(study.status());
+  if (options.list) return list_rows(*study), kDone;
+  if (options.run.run.folder.empty())
+    return fail({StatusCode::invalid_argument, "-o FOLDER is missing; see dupin bench --help"});
+  options.run.programs.files = files;
+  options.run.programs.rounds = options.programs;
+  options.run.programs.size = *std::max_element(options.sizes.begin(), options.sizes.end());
   return run_study(*study, options.run);
 }
 
@@ -129,7 +138,6 @@ void add_bench_command(CLI::App& app, Command& chosen) {
   command
       ->add_option("-o,--output", options->run.run.folder,
                    "The folder of results; a run that was ended goes on there")
-      ->required()
       ->type_name("FOLDER");
   command->add_option("--models", options->models, "So many models, spread over the corpus (default: all)")
       ->check(CLI::Range(1, 1000000))
@@ -139,8 +147,11 @@ void add_bench_command(CLI::App& app, Command& chosen) {
       ->check(CLI::Range(1, 16384))
       ->type_name("SIZE,...")
       ->capture_default_str();
+  std::vector<std::string> names;
+  for (const Knob& knob : knobs()) names.emplace_back(knob.primitive);
   command->add_option("--primitives", options->primitives, "These alone")
       ->delimiter(',')
+      ->check(CLI::IsMember(names))
       ->type_name("NAME,...");
   command->add_option("--reference", options->reference, "exact: the ray caster; or triangles:DEFLECTION")
       ->capture_default_str();
@@ -150,6 +161,13 @@ void add_bench_command(CLI::App& app, Command& chosen) {
   command->add_option("--prepares", options->prepares, "Timed preparations of each row, in turn")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  command
+      ->add_option("--programs", options->programs,
+                   "Rounds of whole processes, from the file to the picture: dupin, F3D, FreeCAD; 0: none")
+      ->check(CLI::Range(0, 1000))
+      ->type_name("ROUNDS")
+      ->capture_default_str();
+  command->add_flag("--list", options->list, "Measure nothing; list the rows");
   command->add_flag("--pictures", options->pictures, "Keep the pictures, with difference pictures");
   command->add_flag("!--no-report", options->run.report, "No report.html");
   add_common_options(*command, options->run.run.common);

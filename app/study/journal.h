@@ -65,6 +65,8 @@ class JournalFile {
 
 std::string journal_name(int shard, int shards);
 
+/// Text as a cell of a CSV.
+std::string csv_cell(const std::string& text);
 /// results.csv: what is the same run after run, one line a row, failures with their reason. timed.csv: the
 /// same with the seconds, the commit and the machine. Written whole.
 Status write_tables(const Study& study, const std::vector<const nlohmann::ordered_json*>& lines,

@@ -28,12 +28,6 @@ Status read_shard(const std::string& text, RunOptions& run) {
   return {};
 }
 
-void list_rows(const Study& study) {
-  for (const StudyRow& row : study.rows)
-    std::printf("%zu\t%s\t%s\t%dx%d\t%s\n", row.index, row.model.name.c_str(), row.view.name.c_str(),
-                row.width, row.height, row.arguments().c_str());
-}
-
 int run(StudyOptions options) {
   if (const Status status = read_shard(options.shard, options.run.run); !status.ok()) return fail(status);
   if (options.run.merge && !options.shard.empty())

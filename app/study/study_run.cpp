@@ -1,6 +1,7 @@
 #include "study_run.h"
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 
@@ -38,6 +39,12 @@ std::vector<const nlohmann::ordered_json*> lines_of(const Study& study, const Jo
 
 }  // namespace
 
+void list_rows(const Study& study) {
+  for (const StudyRow& row : study.rows)
+    std::printf("%zu\t%s\t%s\t%dx%d\t%s\n", row.index, row.model.name.c_str(), row.view.name.c_str(),
+                row.width, row.height, row.arguments().c_str());
+}
+
 int run_study(const Study& study, const StudyRun& options) {
   Session session(options.run.common);
   if (const Status status = make_folder(options.run.folder); !status.ok()) return session.fail(status);
@@ -67,6 +74,8 @@ int run_study(const Study& study, const StudyRun& options) {
                  " rows failed; results.csv says why");
   session.note(std::to_string(lines.size()) + " rows in " + options.run.folder +
                "/results.csv and timed.csv");
+  if (const Status status = measure_programs(session, options.programs, options.run.folder); !status.ok())
+    return session.fail(status);
   if (options.report)
     if (const std::string why = make_report(options.run.folder); !why.empty())
       session.note("no report.html: " + why);

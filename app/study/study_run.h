@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "programs.h"
 #include "runner.h"
 #include "study.h"
 
@@ -15,8 +16,12 @@ struct StudyRun {
   bool merge = false;                 ///< measure nothing: join what is there
   std::vector<std::string> journals;  ///< further folders whose rows count
   std::string text;                   ///< of the study, kept with the results
+  ProgramRuns programs;               ///< whole processes, after the rows
   bool report = true;                 ///< also make the page
 };
+
+/// A line a row, on standard output.
+void list_rows(const Study& study);
 
 /// Measures what is left, then writes the tables (not for one shard of several). The exit code.
 int run_study(const Study& study, const StudyRun& options);

@@ -7,24 +7,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
-}
-
 std::string cell(const Json& numbers, const std::string& name) {
   const auto at = numbers.find(name);
   if (at == numbers.end() || at->is_null()) return {};
-  return at->is_string() ? cell(at->get<std::string>()) : at->dump();
+  return at->is_string() ? csv_cell(at->get<std::string>()) : at->dump();
 }
 
 class Table {
  public:
   Table(const Study& study, bool timed) : study_(study), timed_(timed) {
     text_ = "row,model,view,width,height";
-    for (const std::string& key : study.keys) text_ += "," + cell(key);
+    for (const std::string& key : study.keys) text_ += "," + csv_cell(key);
     text_ += ",status";
     for (const std::string& name : result_columns()) text_ += "," + name;
     if (timed) {
@@ -35,10 +28,10 @@ class Table {
   }
 
   void add(const StudyRow& row, const Json& line) {
-    text_ += std::to_string(row.index) + "," + cell(row.model.name) + "," + cell(row.view.name) + "," +
-             std::to_string(row.width) + "," + std::to_string(row.height);
-    for (const std::string& key : study_.keys) text_ += "," + cell(row.value_of(key));
-    text_ += "," + cell(line["status"].get<std::string>());
+    text_ += std::to_string(row.index) + "," + csv_cell(row.model.name) + "," + csv_cell(row.view.name) +
+             "," + std::to_string(row.width) + "," + std::to_string(row.height);
+    for (const std::string& key : study_.keys) text_ += "," + csv_cell(row.value_of(key));
+    text_ += "," + csv_cell(line["status"].get<std::string>());
     for (const std::string& name : result_columns()) text_ += "," + cell(line["results"], name);
     if (timed_) {
       for (const std::string& name : time_columns()) text_ += "," + cell(line["times"], name);
@@ -62,6 +55,13 @@ class Table {
 };
 
 }  // namespace
+
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
 
 Status write_tables(const Study& study, const std::vector<const Json*>& lines, const std::string& folder) {
   for (const bool timed : {false, true}) {

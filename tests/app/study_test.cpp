@@ -18,52 +18,26 @@
 #include <thread>
 
 #include "command.h"
+#include "study_table.h"
 
 namespace dupin::test {
 namespace {
 
 using testing::HasSubstr;
-using Row = std::map<std::string, std::string>;
-
-/// No cell of these tables holds a comma.
-std::vector<Row> table(const std::string& path) {
-  std::istringstream lines(read_file(path));
-  std::vector<std::string> names;
-  std::vector<Row> rows;
-  for (std::string line, cell; std::getline(lines, line);) {
-    std::istringstream cells(line);
-    std::vector<std::string> values;
-    while (std::getline(cells, cell, ',')) values.push_back(cell);
-    if (names.empty()) {
-      names = values;
-      continue;
-    }
-    values.resize(names.size());
-    Row& row = rows.emplace_back();
-    for (std::size_t i = 0; i < names.size(); ++i) row[names[i]] = values[i];
-  }
-  return rows;
-}
-
-double number(const Row& row, const std::string& name) {
-  const auto at = row.find(name);
-  if (at == row.end() || at->second.empty()) {
-    ADD_FAILURE() << "no " << name;
-    return 0;
-  }
-  return std::stod(at->second);
-}
 
 std::string samples_line() {
   return "models = [\"" + sample("bracket.step") + "\", \"" + sample("freeform.step") + "\"]\n";
 }
 
-/// 200 rows that take a few milliseconds each.
+/// 200 rows of seven primitives, drawn, timed and compared, that take a few milliseconds each.
 std::string two_hundred_rows() {
-  return samples_line() +
-         "title = \"two hundred\"\ndraw = false\n"
-         "[[sweep]]\nprimitive = \"dp\"\nmethod = \"uniform\"\ngrid = [2, 3, 4, 5]\n"
-         "epsilon = [0.05, 0.04, 0.03, 0.02, 0.01]\ndelta = [1, 2, 3, 4, 5]\n";
+  return "title = \"two hundred\"\nmodels = \"" + sample("bracket.step") +
+         "\"\nviews = [\"iso\", { view = \"front\", zoom = 3 }]\nsizes = [24, [40, 32]]\nframes = 1\n"
+         "[[sweep]]\nprimitive = [\"dp\", \"square\", \"rectangle\", \"ellipse\"]\nmethod = \"uniform\"\n"
+         "grid = [2, 3, 4, 5, 6]\ndelta = [1, 4]\n"
+         "[[sweep]]\nprimitive = \"triangles\"\ndeflection = [1e-2, 3e-3]\n"
+         "[[sweep]]\nprimitive = \"quadric\"\ntolerance = [4, 2, 1]\nnormal-tolerance = [8, 4]\n"
+         "[[sweep]]\nprimitive = \"pop\"\ndeflection = 1e-2\nsplat-size = [1, 3]\n";
 }
 
 TEST(Study, AWrongFileIsToldWithItsLineBeforeAnyWork) {
@@ -96,6 +70,12 @@ TEST(Study, AWrongFileIsToldWithItsLineBeforeAnyWork) {
        "needs reference = \"triangles\""},
       {"SAMPLES\n[[sweep]]\nprimitive = []\n", 3, "primitive has no values"},
       {"SAMPLES\n[sweep]\nprimitive = \"quadric\"\n", 2, "two brackets"},
+      {"models = [{ file = \"nowhere.dps\", of = \"a.step\" }]\n", 1, "'nowhere.dps' is not there"},
+      {"models = [{ flie = \"a.dps\" }]\n", 1, "unknown key 'flie' of a model"},
+      {"models = [{ of = \"wrong.toml\" }]\n", 1, "needs its file"},
+      {"models = [{ file = \"wrong.toml\", of = \"wrong.toml\" }]\n", 1, "neither points (.dps) nor a tree"},
+      {"SAMPLES\n[[sweep]]\nprimitive = \"quadric\"\ntolerance = nan\n", 4, "tolerance"},
+      {"SAMPLES\nrow-seconds = 0\n", 2, "row-seconds = 0 is not between"},
       {"SAMPLES\n", 1, "no [[sweep]]"},
       {"[[sweep]]\nprimitive = \"quadric\"\n", 1, "no models"},
       {"title = \"never closed\nframes = 1\n", 1, ""},
@@ -169,7 +149,7 @@ void run_until(const std::string& study, const std::string& folder, std::size_t 
 TEST(Study, OneThatWasKilledHalfWayGoesOnToTheSameTable) {
   const Folder folder;
   const std::string study = folder.write("s.toml", two_hundred_rows());
-  ASSERT_EQ(run_dupin({"study", study, "-o", folder.path("whole")}).exit_code, 0);
+  ASSERT_EQ(run_dupin({"study", study, "-o", folder.path("whole"), "--no-report"}).exit_code, 0);
   run_until(study, folder.path("killed"), 100);
   const std::string journal = read_file(folder.path("killed/rows.jsonl"));
   const auto before = std::count(journal.begin(), journal.end(), '\n');
@@ -177,7 +157,7 @@ TEST(Study, OneThatWasKilledHalfWayGoesOnToTheSameTable) {
   EXPECT_LT(before, 200) << "it was killed too late to show anything";
   EXPECT_EQ(read_file(folder.path("killed/results.csv")), "");
   std::ofstream(folder.path("killed/rows.jsonl"), std::ios::app) << "{\"key\": \"half a li";
-  ASSERT_EQ(run_dupin({"study", study, "-o", folder.path("killed")}).exit_code, 0);
+  ASSERT_EQ(run_dupin({"study", study, "-o", folder.path("killed"), "--no-report"}).exit_code, 0);
   const std::string whole = read_file(folder.path("whole/results.csv"));
   EXPECT_EQ(table(folder.path("whole/results.csv")).size(), 200U);
   EXPECT_EQ(read_file(folder.path("killed/results.csv")), whole);
@@ -188,15 +168,17 @@ TEST(Study, OneThatWasKilledHalfWayGoesOnToTheSameTable) {
 TEST(Study, TwoShardsJoinToWhatOneRunGives) {
   const Folder folder;
   const std::string study = folder.write("s.toml", two_hundred_rows());
-  ASSERT_EQ(run_dupin({"study", study, "-o", folder.path("whole")}).exit_code, 0);
-  ASSERT_EQ(run_dupin({"study", study, "-o", folder.path("a"), "--shard", "1/2"}).exit_code, 0);
+  ASSERT_EQ(run_dupin({"study", study, "-o", folder.path("whole"), "--no-report"}).exit_code, 0);
+  ASSERT_EQ(run_dupin({"study", study, "-o", folder.path("a"), "--shard", "1/2", "--no-report"}).exit_code,
+            0);
   const Outcome early = run_dupin({"study", study, "-o", folder.path("a"), "--merge"});
   EXPECT_EQ(early.exit_code, 4);
   EXPECT_THAT(early.err, HasSubstr("100 of 200 rows have not been measured"));
   ASSERT_EQ(run_dupin({"study", study, "-o", folder.path("b"), "--shard", "2/2"}).exit_code, 0);
-  ASSERT_EQ(
-      run_dupin({"study", study, "-o", folder.path("a"), "--merge", "--from", folder.path("b")}).exit_code,
-      0);
+  ASSERT_EQ(run_dupin({"study", study, "-o", folder.path("a"), "--merge", "--from", folder.path("b"),
+                       "--no-report"})
+                .exit_code,
+            0);
   EXPECT_EQ(read_file(folder.path("a/results.csv")), read_file(folder.path("whole/results.csv")));
   for (const char* shard : {"0/2", "3/2", "1", "1/2x", "-1/2"})
     EXPECT_EQ(run_dupin({"study", study, "-o", folder.path("c"), std::string("--shard=") + shard}).exit_code,
@@ -216,33 +198,6 @@ TEST(Study, ADamagedModelCostsItsRowsAlone) {
   EXPECT_EQ(std::count(results.begin(), results.end(), '\n'), 5);
   EXPECT_THAT(results, HasSubstr("\n0,damaged.step,iso,512,512,quadric,"));
   EXPECT_THAT(results, HasSubstr("quadric,ok,"));
-}
-
-TEST(Study, BothSidesOfAComparisonDoTheSameWork) {
-  const Folder folder;
-  const std::string study = folder.write(
-      "s.toml",
-      samples_line() +
-          "views = [\"iso\", { view = \"left\", orthographic = true }, { view = \"top\", zoom = 4 }]\n"
-          "sizes = [[192, 128]]\nframes = 0\n"
-          "[[sweep]]\nprimitive = \"quadric\"\ncolor = \"#808080\"\n"
-          "[[sweep]]\nprimitive = \"triangles\"\ndeflection = 1e-4\ncolor = \"#808080\"\n");
-  ASSERT_EQ(run_dupin({"study", study, "-o", folder.path("r")}).exit_code, 0);
-  const std::vector<Row> rows = table(folder.path("r/results.csv"));
-  ASSERT_EQ(rows.size(), 12U);
-  for (const Row& row : rows) {
-    SCOPED_TRACE(row.at("row") + " " + row.at("model") + " " + row.at("view") + " " + row.at("primitive"));
-    const bool quadric = row.at("primitive") == "quadric";
-    EXPECT_EQ(row.at("status"), "ok");
-    EXPECT_NEAR(number(row, "covered_px"), number(row, "reference_covered_px"),
-                0.002 * number(row, "reference_covered_px"));
-    EXPECT_LE(number(row, "rmse_covered"), quadric ? 4 : 6);
-    EXPECT_EQ(number(row, "holes_px"), 0);
-    EXPECT_LE(number(row, "depth_p99_px"), quadric ? 0.5 : 4);
-    if (quadric) {
-      EXPECT_LE(number(row, "normal_p99_degrees"), number(row, "normal_bound_degrees"));
-    }
-  }
 }
 
 /// Of rows by one key, in the study's order.
@@ -327,23 +282,6 @@ TEST(Study, ARowsCommandDrawsItsPicture) {
     EXPECT_LT(nlohmann::json::parse(compared.out)["rmse"].get<double>(), 0.5) << row["command"];
   }
   EXPECT_EQ(rows, 4);
-}
-
-TEST(Bench, MeasuresEveryPrimitiveOnACorpus) {
-  const Folder folder;
-  const Outcome outcome =
-      run_dupin({"bench", "--corpus", sample("bracket.step"), "-o", folder.path("r"), "--sizes", "96",
-                 "--frames", "2", "--prepares", "1", "--primitives", "quadric,triangles,pop"});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const std::vector<Row> rows = table(folder.path("r/timed.csv"));
-  EXPECT_EQ(rows.size(), 3U * (5 + 4 + 4));
-  for (const Row& row : rows) {
-    EXPECT_EQ(row.at("status"), "ok");
-    EXPECT_GT(number(row, "frame_ms"), 0);
-    EXPECT_GT(number(row, "prepare_s"), 0);
-    EXPECT_GT(number(row, "bytes"), 0);
-    EXPECT_FALSE(row.at("commit").empty() && row.at("cpu").empty());
-  }
 }
 
 }  // namespace
