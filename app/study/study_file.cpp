@@ -378,6 +378,7 @@ class Reader {
     if (const auto* text = node.as_string()) return text->get();
     if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
     if (node.is_integer()) return std::to_string(*node.value<std::int64_t>());
+    if (node.is_floating_point() && std::isnan(*node.value<double>())) fail(line_of(node), key + " is no number");
     if (node.is_floating_point()) return text_of(*node.value<double>());
     if (const toml::array* array = node.as_array()) {
       std::string text;
