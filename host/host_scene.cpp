@@ -222,6 +222,7 @@ Status HostScene::Impl::upload(PreparedModel all) {
   auto made = renderer->upload(*all.model, content);
   if (!made) return made.status();
   scene = std::move(*made);
+  built = false;
   trees = std::move(layers);
   model = all.model;
   for (const auto& [id, object] : objects) place(object), show_all(object);
@@ -266,6 +267,19 @@ Status HostScene::draw(const HostView& view, const DrawOptions& options, FrameSt
   DrawOptions own = options;
   own.exact_model = nullptr;
   return impl_->renderer->draw_into_host(*impl_->scene, view, own, stats);
+}
+
+Result<bool> HostScene::get_ready(const HostView& view, const DrawOptions& options, double milliseconds) {
+  const Scene* const before = impl_->scene.get();
+  if (const Status status = impl_->update(); !status.ok()) return status;
+  if (!impl_->scene || (impl_->built && impl_->scene.get() == before)) return true;
+  if (impl_->scene.get() != before) return false;
+  DrawOptions own = options;
+  own.exact_model = nullptr;
+  const auto done = impl_->renderer->build_for(*impl_->scene, view, own, milliseconds);
+  if (!done) return done.status();
+  impl_->built = *done;
+  return false;
 }
 
 Result<Frame> HostScene::picture(const Camera& camera, const DrawOptions& options, bool exact) {

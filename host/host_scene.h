@@ -85,6 +85,10 @@ class HostScene {
   // ---- drawing. `exact_model` of the options is not looked at.
   /// Into the framebuffer that is bound for drawing, against and into its depth buffer.
   Status draw(const HostView& view, const DrawOptions& options, FrameStats* stats = nullptr);
+  /// For a host that wants to stay responsive while objects come: does a part of what a frame does when they
+  /// are new, uploading or building programs for about `milliseconds`, and draws nothing. True: it had nothing
+  /// to do, so that `draw` takes no longer than any frame. A host calls it in a frame's place until it is.
+  Result<bool> get_ready(const HostView& view, const DrawOptions& options, double milliseconds);
   /// Into memory. With `exact`, curvatures are the exact surfaces' at every pixel, which takes a microsecond
   /// or so for each.
   Result<Frame> picture(const Camera& camera, const DrawOptions& options, bool exact = true);

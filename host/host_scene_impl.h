@@ -31,6 +31,7 @@ class HostScene::Impl {
   std::unique_ptr<TreeLayers> trees;
   std::unique_ptr<Scene> scene;
   bool stale = false;  ///< objects came, went or changed since
+  bool built = false;  ///< nothing is left to build for what is uploaded
 
   /// What is prepared for a view, for the objects as they are uploaded.
   std::unique_ptr<LoadJob> refinement;

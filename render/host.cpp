@@ -33,6 +33,14 @@ bool own_depth_picture(const DrawOptions& options) {
   return options.samples > 1;
 }
 
+/// What is drawn of a frame that the host's framebuffer gets.
+DrawOptions for_a_host(const DrawOptions& options) {
+  DrawOptions own = options;
+  own.outputs = own_depth_picture(own) ? kScreen | kDepth : kScreen;
+  own.background.reset();
+  return own;
+}
+
 /// What may be drawn beyond the box of the geometry: edges, points.
 constexpr double kMarginPx = 10;
 
@@ -109,9 +117,7 @@ Status Renderer::draw_into_host(Scene& scene, const HostView& host, const DrawOp
   const auto start = std::chrono::steady_clock::now();
   auto view = view_rays(host.view, host.projection, host.viewport[2], host.viewport[3]);
   if (!view) return view.status();
-  DrawOptions own = options;
-  own.outputs = own_depth_picture(own) ? kScreen | kDepth : kScreen;
-  own.background.reset();
+  const DrawOptions own = for_a_host(options);
   const Status valid = check(own, scene.impl());
   if (!valid.ok()) return valid;
   const GlStateGuard state(*impl_->gl);
@@ -123,6 +129,20 @@ Status Renderer::draw_into_host(Scene& scene, const HostView& host, const DrawOp
     stats->milliseconds = time.count();
   }
   return status;
+}
+
+Result<bool> Renderer::build_for(Scene& scene, const HostView& host, const DrawOptions& options,
+                                 double milliseconds) {
+  const auto view = view_rays(host.view, host.projection, host.viewport[2], host.viewport[3]);
+  if (!view) return view.status();
+  const DrawOptions own = for_a_host(options);
+  const Status valid = check(own, scene.impl());
+  if (!valid.ok()) return valid;
+  const GlStateGuard state(*impl_->gl);
+  const Status status = impl_->draw_samples_within(milliseconds, scene.impl(), *view, own);
+  impl_->gl->Finish();  // what is not drawn yet would be waited for by the next frame
+  if (status.code == StatusCode::cancelled) return false;
+  return status.ok() ? Result<bool>(true) : Result<bool>(status);
 }
 
 Result<Frame> Renderer::read_host_view(Scene& scene, const HostView& host,

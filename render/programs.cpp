@@ -6,6 +6,25 @@
 
 namespace dupin {
 
+Status Renderer::Impl::may_build() {
+  if (!build_time_) return {};
+  const auto now = std::chrono::steady_clock::now();
+  if (!build_until_)
+    build_until_ = now + std::chrono::duration_cast<std::chrono::steady_clock::duration>(*build_time_);
+  else if (now >= *build_until_)
+    return {StatusCode::cancelled, "there are more programs to build"};
+  return {};
+}
+
+Status Renderer::Impl::draw_samples_within(double milliseconds, const Scene::Impl& scene,
+                                           const ViewRays& view, const DrawOptions& options) {
+  build_time_ = std::chrono::duration<double, std::milli>(milliseconds);
+  build_until_.reset();
+  const Status status = draw_samples(scene, view, options);
+  build_time_.reset();
+  return status;
+}
+
 Result<GLuint> Renderer::Impl::program(const std::string& wanted, const ProgramText& text) {
   // Whatever draws proxies is cut by the sections.
   const bool cut = !sections_.empty() && !text.vertex.empty() &&
@@ -17,6 +36,7 @@ Result<GLuint> Renderer::Impl::program(const std::string& wanted, const ProgramT
     gl->UseProgram(found->second.name());
     return found->second.name();
   }
+  if (const Status status = may_build(); !status.ok()) return status;
   ProgramText full = text;
   if (cut) full.defines.push_back("SECTIONS " + number);
   full.units = {{"heap", kHeapUnit},

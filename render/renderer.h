@@ -241,6 +241,11 @@ class Renderer {
   Status draw_into_host(Scene& scene, const HostView& host, const DrawOptions& options,
                         FrameStats* stats = nullptr);
 
+  /// Does a part of what the first such frame takes time for: builds programs, and has the driver compile
+  /// them by drawing into pictures of its own, until that took about `milliseconds` (one program at least).
+  /// True: nothing is left to build.
+  Result<bool> build_for(Scene& scene, const HostView& host, const DrawOptions& options, double milliseconds);
+
   /// What draw_into_host would draw in a rectangle (x, y, width, height) of the viewport, in pixels from its
   /// lower left corner: for picking. The host's framebuffer is neither looked at nor touched.
   Result<Frame> read_host_view(Scene& scene, const HostView& host, const std::array<int, 4>& rectangle,

@@ -2,6 +2,8 @@
 #ifndef DUPIN_RENDER_RENDERER_IMPL_H
 #define DUPIN_RENDER_RENDERER_IMPL_H
 
+#include <chrono>
+#include <optional>
 #include <functional>
 #include <map>
 #include <memory>
@@ -88,6 +90,8 @@ class Renderer::Impl {
   void prepare_sample(int width, int height);
   Status run(const Pass& pass);
   Status draw_samples(const Scene::Impl& scene, const ViewRays& view, const DrawOptions& options);
+  Status draw_samples_within(double milliseconds, const Scene::Impl& scene, const ViewRays& view,
+                             const DrawOptions& options);
   /// From the color picture, a sum of samples, to the screen picture.
   Status resolve(const ViewRays& view, int samples);
   /// Puts what the last draw_samples drew into the host's framebuffer.
@@ -105,8 +109,10 @@ class Renderer::Impl {
   void read(Picture picture, GLenum format, GLenum type, void* pixels);
   void read_ids(std::uint32_t* pixels);
 
-  /// The program of that key, built by `text` the first time; left in use.
+  /// The program of that key, built by `text` the first time; left in use. `cancelled` where build_for has had
+  /// its time.
   Result<GLuint> program(const std::string& key, const ProgramText& text);
+  Status may_build();
   /// Sets the uniforms that describe the camera, whichever of them the program in use has.
   void set_view(GLuint program, const ViewRays& view) const;
   const GlVertexArray& empty_array() const { return empty_array_; }
@@ -143,6 +149,9 @@ class Renderer::Impl {
   void grow_indices(std::uint32_t dps);
 
   std::map<std::string, GlProgram> programs_;
+  /// While build_for draws: how long it may go on from the first program that it builds, and when that ends.
+  std::optional<std::chrono::duration<double, std::milli>> build_time_;
+  std::optional<std::chrono::steady_clock::time_point> build_until_;
   DrawList list_;
   std::vector<DrawOptions::Section> sections_;  ///< this pass's
   bool at_once_ = false;                        ///< vertex shaders may hand on what colors at once need

@@ -10,11 +10,13 @@ namespace dupin::app {
 namespace {
 
 constexpr int kRestMilliseconds = 150, kClickPixels = 3;
+constexpr double kBuildMilliseconds = 20;  // of a frame's, so that input is heard between them
 constexpr Color kSelected{1.0F, 0.45F, 0.02F, 1};
 
 }  // namespace
 
 Canvas::Canvas(QWidget* parent) : QOpenGLWidget(parent) {
+  setUpdateBehavior(PartialUpdate);  // the last picture stays until the next is ready
   setFocusPolicy(Qt::StrongFocus);
   setMinimumSize(160, 120);
   rest_.setSingleShot(true);
@@ -40,14 +42,33 @@ void Canvas::initializeGL() {
 
 void Canvas::resizeGL(int width, int height) {
   camera.resize(in_pixels({width, height}).x(), in_pixels({width, height}).y());
+  empty_ = true;
 }
 
-void Canvas::paintGL() {
+void Canvas::clear() {
   QOpenGLFunctions* gl = QOpenGLContext::currentContext()->functions();
   gl->glClearColor(0.93F, 0.94F, 0.96F, 1);
   gl->glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  if (!scene_) return;
   gl->glEnable(GL_DEPTH_TEST);
+  empty_ = false;
+}
+
+/// New objects are made ready a slice at a time, with the last picture left on the screen.
+bool Canvas::ready() {
+  if (!preparing_) return true;
+  const auto done = scene_->get_ready(camera.view(), options, kBuildMilliseconds);
+  preparing_ = done && !*done;  // what failed, draw says
+  return !preparing_;
+}
+
+void Canvas::paintGL() {
+  if (scene_ && !ready()) {
+    if (empty_) clear();
+    QTimer::singleShot(0, this, [this] { update(); });
+    return;
+  }
+  clear();
+  if (!scene_) return;
   const Status status = scene_->draw(camera.view(), options, &stats_);
   ++frames_;
   if (!status.ok() && failed) failed(status.message);
@@ -62,6 +83,7 @@ void Canvas::changed() {
 ObjectId Canvas::add(std::shared_ptr<const PreparedModel> model) {
   if (!scene_) return 0;
   const auto id = scene_->add(std::move(model));
+  preparing_ = preparing_ || id.ok();
   changed();
   return id ? *id : 0;
 }

@@ -34,6 +34,8 @@ class Canvas : public QOpenGLWidget {
   void refit_box();
   void changed();  ///< something is to be drawn anew
   int frames() const { return frames_; }
+  /// Something was added that is not drawn yet.
+  bool preparing() const { return preparing_; }
 
  protected:
   void initializeGL() override;
@@ -47,12 +49,14 @@ class Canvas : public QOpenGLWidget {
  private:
   void pick(const QPoint& at);
   void refine();
+  bool ready();
+  void clear();
   QPoint in_pixels(const QPoint& at) const { return at * devicePixelRatio(); }
 
   std::unique_ptr<HostScene> scene_;
   std::optional<Target> selected_;
   QPoint pressed_, last_;
-  bool dragged_ = false;
+  bool dragged_ = false, preparing_ = false, empty_ = true;
   QTimer rest_;
   FrameStats stats_;
   int frames_ = 0;

@@ -68,10 +68,12 @@ Window::Window(const QString& units) {
   // How long events wait: a timer that is late by so much was kept from its turn.
   connect(&heart_, &QTimer::timeout, this, [this] {
     const double now = since_start();
-    const bool loading = std::any_of(files_.begin(), files_.end(), [](const auto& f) { return f->loading; });
-    if (loading && last_beat_ > 0)
+    const bool busy = canvas_->preparing() || std::any_of(files_.begin(), files_.end(),
+                                                          [](const auto& f) { return f->loading; });
+    if ((busy || was_busy_) && last_beat_ > 0)
       report_.longest_wait_ms = std::max(report_.longest_wait_ms, now - last_beat_ - kBeat);
     last_beat_ = now;
+    was_busy_ = busy;
   });
   heart_.start(kBeat);
 }

@@ -28,7 +28,7 @@ class Legend;
 /// What the window did, for tests and measurements (dupin view --report).
 struct ViewReport {
   double window_ms = 0, first_parts_ms = 0, loaded_ms = 0;  ///< since the program started; 0: not yet
-  double longest_wait_ms = 0;  ///< that an event had to wait while files were read and prepared
+  double longest_wait_ms = 0;  ///< that an event had to wait while files were read, prepared and first drawn
 };
 
 class Window : public QMainWindow {
@@ -91,7 +91,7 @@ class Window : public QMainWindow {
   LoaderOptions loader_options_;
   ViewReport report_;
   double last_beat_ = 0;
-  bool filling_tree_ = false, fitted_ = false;
+  bool filling_tree_ = false, fitted_ = false, was_busy_ = false;
   std::string last_message_;
   std::optional<Hit> hit_;
   double area_ = 0;

@@ -191,6 +191,38 @@ TEST(HostScene, RefinementMakesAZoomedViewExact) {
   EXPECT_FALSE(f.scene->refining());
 }
 
+/// How often a host has to ask until everything is ready.
+int slices(HostScene& scene, double milliseconds) {
+  for (int i = 0; i < 100; ++i) {
+    const auto ready = scene.get_ready(from_above(), {}, milliseconds);
+    EXPECT_TRUE(ready.ok()) << ready.status().message;
+    if (!ready || *ready) return i;
+  }
+  return 100;
+}
+
+TEST(HostScene, GetsReadyASliceAtATime) {
+  Fixture f;
+  EXPECT_EQ(slices(*f.scene, 0), 0) << "nothing is in it";
+  const ObjectId id = *f.scene->add(prepared(plate_and_ball(0.8)));
+  // The upload, then one program at a time: of points, of planes, of the sphere, and what shades them.
+  const int one_at_a_time = slices(*f.scene, 0);
+  EXPECT_GT(one_at_a_time, 3);
+  EXPECT_LT(one_at_a_time, 100);
+  EXPECT_EQ(slices(*f.scene, 0), 0);
+  const auto ball = f.at(kSize / 2 + 10, kSize / 2);
+  ASSERT_TRUE(ball);
+  EXPECT_EQ(ball->target, (Target{id, 1, 0}));
+  (void)*f.scene->add(prepared(plate_and_ball(0.5)));
+  EXPECT_EQ(slices(*f.scene, 0), 2) << "the upload, and a look whether there is something new to build";
+  HostView bad = from_above();
+  bad.projection = {};
+  (void)*f.scene->add(prepared(plate_and_ball(0.4)));
+  EXPECT_FALSE(*f.scene->get_ready(bad, {}, 0)) << "the upload needs no view";
+  EXPECT_EQ(f.scene->get_ready(bad, {}, 0).status().code, StatusCode::invalid_argument);
+  EXPECT_EQ(slices(*f.scene, 1e6), 1);
+}
+
 TEST(HostScene, LeavesAHostsStateAsItWas) {
   const auto model = prepared(plate_and_ball());
   auto context = create_context(Device::automatic);
@@ -205,6 +237,10 @@ TEST(HostScene, LeavesAHostsStateAsItWas) {
     auto scene = HostScene::create((*context)->loader());
     ASSERT_TRUE(scene.ok());
     (void)*(*scene)->add(model);
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_FALSE(*(*scene)->get_ready(from_above(), {}, 0));
+      expect_unchanged("get_ready");
+    }
     ASSERT_TRUE((*scene)->draw(from_above(), {}).ok());
     expect_unchanged("draw");
     ASSERT_TRUE((*scene)->pick(from_above(), 80, 80).ok());
