@@ -1,6 +1,7 @@
 #include "loader.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "../../cad_import/cad_import.h"
 
@@ -8,6 +9,7 @@ namespace dupin::app {
 namespace {
 
 constexpr std::size_t kFirstFaces = 400;
+constexpr std::chrono::milliseconds kFirstPause{200};
 
 /// Its meshes are drawn, and nothing else.
 std::shared_ptr<const PreparedModel> as_triangles(Model model) {
@@ -17,6 +19,33 @@ std::shared_ptr<const PreparedModel> as_triangles(Model model) {
   prepared->model = std::make_shared<Model>(std::move(model));
   return prepared;
 }
+
+/// Hands pieces over at once where the last is long ago, and else together: each time all that is shown is
+/// uploaded anew, so that the pauses grow.
+class Handover {
+ public:
+  explicit Handover(const LoaderCallbacks& callbacks) : callbacks_(callbacks) {}
+  ~Handover() { flush(); }  // what was ready when loading stopped is shown
+  void add(std::shared_ptr<const PreparedModel> piece) {
+    waiting_.push_back(std::move(piece));
+    if (Clock::now() >= next_) flush();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void flush() {
+    if (waiting_.empty()) return;
+    callbacks_.ready(waiting_.size() == 1 ? waiting_[0] : std::make_shared<PreparedModel>(joined(waiting_)));
+    waiting_.clear();
+    next_ = Clock::now() + pause_;
+    pause_ *= 2;
+  }
+
+  const LoaderCallbacks& callbacks_;
+  std::vector<std::shared_ptr<const PreparedModel>> waiting_;
+  Clock::time_point next_ = Clock::time_point::min();
+  std::chrono::milliseconds pause_ = kFirstPause;
+};
 
 }  // namespace
 
@@ -84,15 +113,16 @@ Status Loader::load() {
   prepare_options.tolerance = kDefaultTolerance * bounding_box(*model).diagonal();
   prepare_options.progress = progress();
   done_ = 0;
+  Handover handover(callbacks_);
   for (Model& piece : pieces_of(std::move(*model))) {
     share_ = static_cast<double>(face_instance_count(piece)) / static_cast<double>(faces);
     if (cancelled_) return {StatusCode::cancelled, path_ + ": stopped"};
     if (options_.deflection > 0) {
-      callbacks_.ready(as_triangles(std::move(piece)));
+      handover.add(as_triangles(std::move(piece)));
     } else {
       auto prepared = prepare(std::make_shared<Model>(std::move(piece)), prepare_options);
       if (!prepared) return prepared.status();
-      callbacks_.ready(std::move(*prepared));
+      handover.add(std::move(*prepared));
     }
     done_ += share_;
   }
