@@ -86,8 +86,9 @@ class HostScene {
   /// Into the framebuffer that is bound for drawing, against and into its depth buffer.
   Status draw(const HostView& view, const DrawOptions& options, FrameStats* stats = nullptr);
   /// For a host that wants to stay responsive while objects come: does a part of what a frame does when they
-  /// are new, uploading or building programs for about `milliseconds`, and draws nothing. True: it had nothing
-  /// to do, so that `draw` takes no longer than any frame. A host calls it in a frame's place until it is.
+  /// are new, uploading or building programs for about `milliseconds`, and draws nothing. True: it had
+  /// nothing to do, so that `draw` takes no longer than any frame. A host calls it in a frame's place until
+  /// it is.
   Result<bool> get_ready(const HostView& view, const DrawOptions& options, double milliseconds);
   /// Into memory. With `exact`, curvatures are the exact surfaces' at every pixel, which takes a microsecond
   /// or so for each.

@@ -3,10 +3,10 @@
 #define DUPIN_RENDER_RENDERER_IMPL_H
 
 #include <chrono>
-#include <optional>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "draw_list.h"
@@ -109,8 +109,8 @@ class Renderer::Impl {
   void read(Picture picture, GLenum format, GLenum type, void* pixels);
   void read_ids(std::uint32_t* pixels);
 
-  /// The program of that key, built by `text` the first time; left in use. `cancelled` where build_for has had
-  /// its time.
+  /// The program of that key, built by `text` the first time; left in use. `cancelled` where build_for has
+  /// had its time.
   Result<GLuint> program(const std::string& key, const ProgramText& text);
   Status may_build();
   /// Sets the uniforms that describe the camera, whichever of them the program in use has.

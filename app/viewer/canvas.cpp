@@ -4,13 +4,14 @@
 #include <QOpenGLContext>
 #include <QOpenGLFunctions>
 #include <QWheelEvent>
+#include <chrono>
 #include <cmath>
 
 namespace dupin::app {
 namespace {
 
 constexpr int kRestMilliseconds = 150, kClickPixels = 3;
-constexpr double kBuildMilliseconds = 20;  // of a frame's, so that input is heard between them
+constexpr double kBuildMilliseconds = 10;  // of a frame's, so that input is heard between them
 constexpr Color kSelected{1.0F, 0.45F, 0.02F, 1};
 
 }  // namespace
@@ -153,6 +154,8 @@ void Canvas::mousePressEvent(QMouseEvent* event) {
 }
 
 void Canvas::mouseMoveEvent(QMouseEvent* event) {
+  const std::chrono::duration<double, std::milli> now = std::chrono::steady_clock::now().time_since_epoch();
+  if (heard) heard(now.count() - static_cast<double>(event->timestamp()));
   if ((event->pos() - pressed_).manhattanLength() > kClickPixels) dragged_ = true;
   if (!dragged_ || event->buttons() == Qt::NoButton) return;
   const QPoint step = in_pixels(event->pos() - last_);

@@ -36,6 +36,8 @@ class Canvas : public QOpenGLWidget {
   int frames() const { return frames_; }
   /// Something was added that is not drawn yet.
   bool preparing() const { return preparing_; }
+  /// How long a move of the pointer waited for its turn, by the X server's clock.
+  std::function<void(double milliseconds)> heard;
 
  protected:
   void initializeGL() override;

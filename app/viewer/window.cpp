@@ -68,14 +68,17 @@ Window::Window(const QString& units) {
   // How long events wait: a timer that is late by so much was kept from its turn.
   connect(&heart_, &QTimer::timeout, this, [this] {
     const double now = since_start();
-    const bool busy = canvas_->preparing() || std::any_of(files_.begin(), files_.end(),
-                                                          [](const auto& f) { return f->loading; });
+    const bool busy = canvas_->preparing() ||
+                      std::any_of(files_.begin(), files_.end(), [](const auto& f) { return f->loading; });
     if ((busy || was_busy_) && last_beat_ > 0)
       report_.longest_wait_ms = std::max(report_.longest_wait_ms, now - last_beat_ - kBeat);
     last_beat_ = now;
     was_busy_ = busy;
   });
   heart_.start(kBeat);
+  canvas_->heard = [this](double waited) {
+    if (was_busy_) report_.longest_input_ms = std::max(report_.longest_input_ms, waited);
+  };
 }
 
 Window::~Window() {
@@ -213,6 +216,7 @@ QByteArray Window::report_json() const {
                    {"first_parts_ms", report_.first_parts_ms},
                    {"loaded_ms", report_.loaded_ms},
                    {"longest_wait_ms", report_.longest_wait_ms},
+                   {"longest_input_ms", report_.longest_input_ms},
                    {"frames", canvas_->frames()},
                    {"eye", vec(camera.eye)},
                    {"target", vec(camera.target)},

@@ -28,7 +28,8 @@ class Legend;
 /// What the window did, for tests and measurements (dupin view --report).
 struct ViewReport {
   double window_ms = 0, first_parts_ms = 0, loaded_ms = 0;  ///< since the program started; 0: not yet
-  double longest_wait_ms = 0;  ///< that an event had to wait while files were read, prepared and first drawn
+  double longest_input_ms = 0;  ///< that a move of the pointer waited in that time
+  double longest_wait_ms = 0;   ///< that an event had to wait while files were read, prepared and first drawn
 };
 
 class Window : public QMainWindow {
