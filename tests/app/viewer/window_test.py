@@ -113,6 +113,29 @@ class Window(unittest.TestCase):
         self.assertGreater(moved["picked"]["area"], 0)
         self.assertEqual((moved["shading"], moved["edges"], moved["sections"], moved["parallel"]), (6, False, 1, True))
 
+    def test_saves_the_picture(self):
+        path = os.path.join(WORK, "saved.png")
+        if os.path.exists(path):
+            os.remove(path)
+        screen = self.screen(MODEL)
+        screen.key("ctrl+s")
+        dialog = screen.tool("search", "--sync", "--onlyvisible", "--name", "^Save picture$").split()[0]
+        screen.tool("windowfocus", "--sync", dialog)
+        screen.key("ctrl+a")
+        screen.tool("type", path)
+        screen.key("Return")
+        time.sleep(1)
+        screen.tool("windowfocus", "--sync", screen.window)
+        code, seen = screen.close()
+        self.assertEqual(code, 0)
+        self.assertEqual(seen["message"], "saved " + path)
+        with open(path, "rb") as file:
+            head = file.read(24)
+        self.assertEqual(head[:8], b"\x89PNG\r\n\x1a\n")
+        width, height = (int.from_bytes(head[i : i + 4], "big") for i in (16, 20))
+        self.assertTrue(300 < width < SIZE[0] and 300 < height < SIZE[1], (width, height))
+        self.assertGreater(os.path.getsize(path), 2000)  # more than a background
+
     def test_says_why_a_file_cannot_be_read_and_goes_on(self):
         nothing = os.path.join(WORK, "nothing.step")
         with open(nothing, "w") as file:
