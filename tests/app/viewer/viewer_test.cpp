@@ -1,10 +1,14 @@
 // The viewer's camera, and how it cuts a model into pieces: without a window.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "../../../app/viewer/loader.h"
 #include "../../../app/viewer/orbit_camera.h"
+#include "../../cad_import/files.h"
 
 namespace dupin::app {
 namespace {
@@ -107,6 +111,41 @@ TEST(Loader, PiecesHoldEveryPartAndPlacementOnce) {
   EXPECT_EQ(placed, instances);
   EXPECT_EQ(all_faces, faces);
   EXPECT_LT(pieces[0].parts.size(), pieces[2].parts.size());
+}
+
+/// What a loader says of an assembly that is stopped at the first word of `stage`, or never.
+struct Heard {
+  std::size_t instances = 0;
+  Status status;
+};
+
+Heard load(const std::string& stop_at) {
+  Heard heard;
+  std::atomic<bool> stop{false}, done{false};
+  {
+    Loader loader(test::sample("assembly.step"), {},
+                  {[&](const std::string& stage, double) { stop = stop || stage == stop_at; },
+                   [&](const auto& prepared) { heard.instances += prepared->model->instances.size(); },
+                   [&](const Status& status) { heard.status = status, done = true; }});
+    while (!done) {
+      if (stop) loader.cancel();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+  return heard;
+}
+
+TEST(Loader, HandsOverEverythingOrSaysThatItWasStopped) {
+  const Heard all = load("no such stage");
+  EXPECT_EQ(all.status.message, "");
+  EXPECT_GT(all.instances, 1U);
+  // A word may come too late to stop what is small; what is handed over is whole all the same.
+  const Heard stopped = load("read");
+  EXPECT_TRUE(stopped.status.code == StatusCode::cancelled || stopped.status.ok()) << stopped.status.message;
+  EXPECT_LE(stopped.instances, all.instances);
+  if (stopped.status.ok()) {
+    EXPECT_EQ(stopped.instances, all.instances);
+  }
 }
 
 }  // namespace
