@@ -8,8 +8,9 @@
 //   const auto hit = (*scene)->pick({view, projection, viewport}, x, y);
 //
 // A HostScene belongs to one context (OpenGL 3.3 and up, core or compatibility), which must be current for
-// `create`, `draw`, `pick…`, `picture` and the destructor. All of it is used by one thread at a time. Every
-// call leaves the context's state as it found it; one that fails says why and leaves everything as it was.
+// `create`, `draw`, `get_ready`, `pick…`, `picture` and the destructor. All of it is used by one thread at a
+// time. Every call leaves the context's state as it found it; one that fails says why and leaves everything
+// as it was.
 #ifndef DUPIN_HOST_HOST_SCENE_H
 #define DUPIN_HOST_HOST_SCENE_H
 
