@@ -1,5 +1,5 @@
-// What the examples with windows draw by where they are built with the tests (examples/host_common.h): asks for all
-// of the context's state before and after.
+// What the examples with windows draw by where they are built with the tests (examples/host_common.h): asks
+// for all of the context's state before and after.
 #include <cstdio>
 
 #include "../../host/host_scene.h"
@@ -25,11 +25,13 @@ dupin::Status draw(dupin::HostScene& scene, const dupin::HostView& view, const d
   const Current context(loader);
   while (gl_error(context)) std::printf("the host itself left an OpenGL error\n");
   const GlState before = gl_state(context);
-  while (gl_error(context)) {}  // what an older context could not be asked for
+  while (gl_error(context)) {
+  }  // what an older context could not be asked for
   const dupin::Status drawn = scene.draw(view, options);
   if (gl_error(context)) std::printf("an OpenGL error is left\n");
   const GlState after = gl_state(context);
-  while (gl_error(context)) {}
+  while (gl_error(context)) {
+  }
   std::printf("state: %zu values, changed: %s\n", before.size(), differences(before, after).c_str());
   return drawn;
 }

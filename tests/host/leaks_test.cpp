@@ -52,7 +52,9 @@ TEST(Leaks, FramesAllocateNothingThatStays) {
   const int frames = count("DUPIN_LEAK_FRAMES", 60);
   const auto draw = [&](int i) {
     ASSERT_TRUE((*scene)->draw(view_at(0.01 * i), {}).ok());
-    if (i % 10 == 0) ASSERT_TRUE((*scene)->pick(view_at(0.01 * i), 48, 48).ok());
+    if (i % 10 == 0) {
+      ASSERT_TRUE((*scene)->pick(view_at(0.01 * i), 48, 48).ok());
+    }
   };
   for (int i = 0; i < 700; i += 16) draw(i);
   // A driver that rasterises later (llvmpipe) holds the buffers of some frames, two megabytes more or less
