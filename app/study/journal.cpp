@@ -6,13 +6,17 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <thread>
 
 namespace dupin::app {
 namespace {
+
+constexpr std::chrono::seconds kLockWait{2};
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
@@ -149,8 +153,13 @@ Status JournalFile::open(const std::string& path) {
   path_ = path;
   file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (file_ < 0) return {StatusCode::cannot_write, path + ": " + std::strerror(errno)};
-  if (flock(file_, LOCK_EX | LOCK_NB) != 0)
-    return {StatusCode::cannot_write, path + ": another run of the study is writing it"};
+  // A worker of a run that was killed shares that run's lock for the moment until it is ended too.
+  const auto until = std::chrono::steady_clock::now() + kLockWait;
+  while (flock(file_, LOCK_EX | LOCK_NB) != 0) {
+    if (std::chrono::steady_clock::now() > until)
+      return {StatusCode::cannot_write, path + ": another run of the study is writing it"};
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
   // A run that was ended may have left half a line.
   const off_t size = lseek(file_, 0, SEEK_END);
   char last = '\n';
