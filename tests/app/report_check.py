@@ -6,11 +6,12 @@ Exit code 77: skipped, with the reason.
 import pathlib
 import re
 import shutil
-import struct
 import subprocess
 import sys
 import tempfile
-import zlib
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+from png_file import png_pixels  # noqa: E402
 
 STUDY = """
 title = "A <report> & its test"
@@ -31,42 +32,6 @@ deflection = [1e-1, 1e-2, 1e-3]
 def skip(why):
     print(f"skipped: {why}")
     sys.exit(77)
-
-
-def png_pixels(path):
-    """Width, height, bytes of each row, channels: of an 8-bit PNG without interlacing."""
-    data = path.read_bytes()
-    at, packed = 8, b""
-    while at < len(data):
-        length, kind = struct.unpack(">I4s", data[at:at + 8])
-        if kind == b"IHDR":
-            width, height, _, color = struct.unpack(">IIBB", data[at + 8:at + 18])
-        if kind == b"IDAT":
-            packed += data[at + 8:at + 8 + length]
-        at += 12 + length
-    channels = {0: 1, 2: 3, 6: 4}[color]
-    raw, stride = zlib.decompress(packed), width * channels
-    rows, above = [], bytearray(stride)
-    for y in range(height):
-        kind, row = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
-        for x in range(stride):
-            a = row[x - channels] if x >= channels else 0
-            b, c = above[x], above[x - channels] if x >= channels else 0
-            if kind == 1:
-                add = a
-            elif kind == 2:
-                add = b
-            elif kind == 3:
-                add = (a + b) // 2
-            elif kind == 4:
-                pa, pb, pc = abs(b - c), abs(a - c), abs(a + b - 2 * c)
-                add = a if pa <= pb and pa <= pc else b if pb <= pc else c
-            else:
-                add = 0
-            row[x] = (row[x] + add) & 255
-        rows.append(row)
-        above = row
-    return width, height, rows, channels
 
 
 def check_page(page):

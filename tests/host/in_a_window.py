@@ -6,40 +6,19 @@ has no edge; with it, each hides a part of the other; no state of the context ch
 """
 import os
 import re
-import struct
 import subprocess
 import sys
-import zlib
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from png_file import png_pixels  # noqa: E402
 
 XVFB_RUN, HOST, DUPIN, MODEL, WORK = sys.argv[1:6]
 LEVELS, EDGE = 2, 12  # an edge: gray levels apart within a pixel's neighbours
 
 
 def png(path):
-    """Width, height and rows of RGB bytes of an 8-bit picture."""
-    with open(path, "rb") as file:
-        data = file.read()
-    at, body = 8, b""
-    while at < len(data):
-        size, kind = struct.unpack(">I4s", data[at:at + 8])
-        if kind == b"IHDR":
-            width, height, bits, color = struct.unpack(">IIBB", data[at + 8:at + 18])
-        if kind == b"IDAT":
-            body += data[at + 8:at + 8 + size]
-        at += 12 + size
-    assert bits == 8 and color in (2, 6), (bits, color)
-    n = 3 if color == 2 else 4
-    raw, stride = zlib.decompress(body), n * width
-    rows, last = [], bytes(stride)
-    for y in range(height):
-        kind, row = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
-        for i in range(stride):
-            a, b, c = row[i - n] if i >= n else 0, last[i], last[i - n] if i >= n else 0
-            p = a + b - c
-            paeth = a if abs(p - a) <= abs(p - b) and abs(p - a) <= abs(p - c) else b if abs(p - b) <= abs(p - c) else c
-            row[i] = (row[i] + (0, a, b, (a + b) // 2, paeth)[kind]) & 255
-        rows.append(row)
-        last = row
+    """Width, height and rows of RGB pixels."""
+    width, height, rows, n = png_pixels(path)
     return width, height, [[tuple(r[n * x:n * x + 3]) for x in range(width)] for r in rows]
 
 
